@@ -1,5 +1,5 @@
-// All of the public headers of the controller: measures, plans, controllers and certificates. They
-// need Eigen and the standard library.
+// All public headers of the controller: measures, plans, controllers and certificates. They require
+// Eigen and the standard library.
 //
 //   auto car = qsmpc::models::make_dynamics("dubins", {{"speed", 1.5}}, 0.1);
 //   auto controller = qsmpc::controller::make_controller("quantised", *car, settings);

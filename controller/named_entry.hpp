@@ -1,4 +1,4 @@
-// Entries of the tables of things that are chosen by name.
+// Look-up of entries by name in the tables of selectable components.
 #pragma once
 
 #include <stdexcept>
@@ -8,8 +8,8 @@
 
 namespace qsmpc::controller {
 
-/// The entry of `table` that is called `name`. Throws std::invalid_argument if there is none; the
-/// message has `what` it should be, e.g. "solver", and the names that are known.
+/// The entry of `table` named `name`. Throws std::invalid_argument if there is none; the message
+/// says `what` was looked up, e.g. "solver", and lists the known names.
 template <class Entry>
 [[nodiscard]] const Entry& named_entry(const std::vector<Entry>& table, std::string_view name,
                                        const char* what) {

@@ -1,8 +1,8 @@
-// How the controller's loops over many particles run side by side, without threads of its own.
+// Parallel loops over many particles. The controller owns no threads.
 //
-// Whoever has threads hands over an Executor; without one everything runs in turn. Work is divided
-// in the same way whatever the executor, and partial results are combined in a fixed order, so that
-// no result depends on it.
+// A caller that owns threads supplies an Executor; without one everything runs serially. Work is
+// divided in the same way for every executor, and partial results are combined in a fixed order, so
+// that no result depends on the executor.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,8 @@
 
 namespace qsmpc::controller {
 
-/// Refers to something callable with a task's number; must not outlive it. Never allocates.
+/// Non-owning reference to a callable that takes a task's number; must not outlive it. Never
+/// allocates.
 class TaskRef {
  public:
   template <class Callable>
@@ -37,7 +38,7 @@ class TaskRef {
 /// are done.
 using Executor = std::function<void(int count, TaskRef task)>;
 
-/// One after the other, in the calling thread.
+/// Runs the tasks one after the other in the calling thread.
 inline void run_in_turn(int count, TaskRef task) {
   for (int n = 0; n < count; ++n) task(n);
 }
@@ -48,8 +49,8 @@ struct ParticleRange {
   std::ptrdiff_t end = 0;
 };
 
-/// Particles that one task works on. A multiple of eight, so that sums have the same interleaved
-/// parts in every chunk.
+/// Particles per task. A multiple of eight, so that sums have the same interleaved parts in every
+/// chunk.
 inline constexpr std::ptrdiff_t kChunk = 1024;
 
 [[nodiscard]] inline int chunks_of(std::ptrdiff_t particles) {
@@ -60,8 +61,8 @@ inline constexpr std::ptrdiff_t kChunk = 1024;
   return {chunk * kChunk, std::min((chunk + 1) * kChunk, particles)};
 }
 
-/// task(range, chunk) for all chunks of the particles. The executor hears of a single one as well,
-/// so that one which may throw, e.g. where the work is to end, is asked in every loop.
+/// Calls task(range, chunk) for all chunks of the particles. Even a single chunk goes through the
+/// executor, so that an executor that may throw, e.g. to stop the work, is called in every loop.
 template <class Task>
 void for_chunks(const Executor& run, std::ptrdiff_t particles, const Task& task) {
   run(chunks_of(particles), [&](int chunk) { task(chunk_range(chunk, particles), chunk); });

@@ -1,4 +1,4 @@
-// Storage that is written again and again with about as much.
+// Reusable storage for data of similar size from use to use.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace qsmpc::controller {
 
-/// Gives out memory from the beginning of a cache line on, so that vectors as wide as a line never
-/// reach over two.
+/// Allocates memory aligned to cache lines, so that SIMD vectors as wide as a line never straddle
+/// two.
 template <class T>
 struct LineAllocator {
   using value_type = T;
@@ -29,20 +29,20 @@ struct LineAllocator {
   bool operator==(const LineAllocator&) const { return true; }
 };
 
-/// Doubles in whole cache lines.
+/// Doubles aligned to cache lines.
 using LineVector = std::vector<double, LineAllocator<double>>;
 
-/// Makes room for `count` entries. Where there is too little, for twice as many, so that
-/// counts which vary from use to use soon cause no more allocations.
+/// Reserves room for `count` entries; where the capacity is too small, for twice as many, so that
+/// counts that vary from use to use soon cause no more allocations.
 template <class T, class Allocator>
 void make_room(std::vector<T, Allocator>& entries, std::size_t count) {
   if (entries.capacity() < count) entries.reserve(2 * count);
 }
 
-/// Memory for doubles that is given out piece by piece and taken back all at once.
+/// Arena of doubles: memory is handed out piece by piece and released all at once.
 class Arena {
  public:
-  /// `count` doubles, which are whatever they were, from the beginning of a cache line on.
+  /// `count` doubles of unspecified value, aligned to a cache line.
   double* take(std::size_t count) {
     count = (count + kLine - 1) / kLine * kLine;
     while (at_ < slabs_.size() && used_ + count > slabs_[at_].size) {
@@ -58,7 +58,8 @@ class Arena {
     given_ += count;
     return begin;
   }
-  /// Takes everything back, and sees to it that half as much again will fit.
+  /// Releases everything, and ensures room for at least 1.5 times the most handed out between two
+  /// resets.
   void reset() {
     most_ = std::max(most_, given_);
     std::size_t room = 0;
@@ -75,8 +76,7 @@ class Arena {
   struct Release {
     void operator()(double* data) const { LineAllocator<double>{}.deallocate(data, 0); }
   };
-  // Nothing is written to it before it is given out, so that room which no use ever needs is no
-  // more than a range of addresses.
+  // Uninitialised: spare room that is never used takes addresses but no memory.
   struct Slab {
     std::size_t size = 0;  // doubles
     std::unique_ptr<double[], Release> data;
@@ -90,9 +90,9 @@ class Arena {
 
   std::vector<Slab> slabs_;
   std::size_t at_ = 0;
-  std::size_t used_ = 0;   // of the slab at hand
-  std::size_t given_ = 0;  // in all
-  std::size_t most_ = 0;   // given between two resets
+  std::size_t used_ = 0;   // of the current slab
+  std::size_t given_ = 0;  // in total
+  std::size_t most_ = 0;   // largest given_ between two resets
 };
 
 }  // namespace qsmpc::controller

@@ -1,4 +1,4 @@
-// The errors that end a command, each with the exit code that the command line documents.
+// The errors that end a command, with the exit codes that the command line documents.
 #pragma once
 
 #include <stdexcept>
@@ -14,7 +14,7 @@ class InputError : public std::runtime_error {
  public:
   struct Where {
     std::string file{};
-    int line = 0;       ///< from 1; 0 where a line makes no sense
+    int line = 0;       ///< from 1; 0 if a line makes no sense
     std::string key{};  ///< dotted path, e.g. "controller.quantisation.state"
     std::string found{};
     std::string expected{};
@@ -26,15 +26,15 @@ class InputError : public std::runtime_error {
   Where where_;
 };
 
-/// A model that the simulator itself refuses or cannot run, in its own words. An episode takes it
-/// as a fault of its plant.
+/// A model that the simulator refuses or cannot run, with the simulator's message. An episode
+/// treats it as a fault of its plant.
 class SimulatorError : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// A controller outside of the program that does not do what it should: it ended, was late or
-/// answered wrongly. An episode takes it as a fault of its controller.
+/// An external controller that misbehaved: it ended, was late or answered wrongly. An episode
+/// treats it as a fault of its controller.
 class ControllerError : public InputError {
  public:
   using InputError::InputError;

@@ -1,4 +1,4 @@
-// Numbers that every room needs by name.
+// Named constants that all folders use.
 #pragma once
 
 #include <limits>

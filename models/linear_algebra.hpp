@@ -1,5 +1,5 @@
-// Decompositions of small dense matrices, each compiled once: an Eigen decomposition costs every
-// source that names it ten seconds of compilation.
+// Decompositions of small dense matrices, each compiled only once: an Eigen decomposition adds ten
+// seconds of compilation to every source that uses it.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,10 +12,10 @@ struct SymmetricEigen {
   Eigen::MatrixXd vectors;  ///< n x n, vᵢ in column i
 };
 
-/// Of a symmetric matrix (n x n, finite), of which the lower triangle is read.
+/// Eigendecomposition of a symmetric matrix (n x n, finite); only the lower triangle is read.
 [[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
 
-/// The eigenvalues alone, ascending; not a number where the iteration has not converged.
+/// The eigenvalues only, ascending; NaN if the iteration has not converged.
 [[nodiscard]] Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
 
 /// The largest singular value of `matrix`.
@@ -29,7 +29,7 @@ struct SymmetricEigen {
 /// The Moore-Penrose inverse (complete orthogonal decomposition).
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 
-/// The lower Cholesky factor L of a symmetric positive definite matrix = L Lᵀ, of which the lower
+/// The lower Cholesky factor L of a symmetric positive definite matrix = L Lᵀ; only the lower
 /// triangle is read.
 [[nodiscard]] Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix);
 
@@ -42,10 +42,10 @@ struct SymmetricEigen {
 [[nodiscard]] Eigen::VectorXd solve_fully_pivoted(const Eigen::MatrixXd& matrix,
                                                   const Eigen::VectorXd& values);
 
-/// The rank of a matrix, and a column that the others determine.
+/// The rank of a matrix, and a column that depends linearly on the others.
 struct ColumnRank {
   Eigen::Index rank = 0;
-  Eigen::Index dependent = -1;  ///< of the columns; -1 where all of them are independent
+  Eigen::Index dependent = -1;  ///< index of that column; -1 if all are independent
 };
 
 /// Pivots below `threshold` times the largest count as zero.

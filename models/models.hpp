@@ -1,4 +1,4 @@
-// All of the public headers of models: systems, and how to make one.
+// All public headers of models: systems and their factory.
 #pragma once
 
 #include "models/constants.hpp"

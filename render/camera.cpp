@@ -11,8 +11,8 @@ namespace {
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kChaseFieldOfView = 42.0;   // degrees, vertical
 constexpr double kChaseElevation = -24.0;    // degrees
-constexpr double kChaseLead = 0.26;          // of the distance: what is ahead matters more
-constexpr double kRegionFieldOfView = 24.0;  // degrees; narrow, so that boxes hardly lean outwards
+constexpr double kChaseLead = 0.26;          // of the distance: the space ahead matters more
+constexpr double kRegionFieldOfView = 24.0;  // degrees; narrow, to limit perspective
 constexpr double kFixedElevation = -42.0;    // degrees
 constexpr double kFixedAzimuth = 68.0;  // degrees; not along an axis, so that boxes show two sides
 constexpr double kRegionMargin = 0.07;  // of the picture, left free about the region

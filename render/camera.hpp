@@ -1,4 +1,4 @@
-// Where pictures are taken from, and where a point of the world ends up in them.
+// Cameras of pictures, and the projection of points of the world into a picture.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ using SpacePoint = std::array<double, 3>;
 
 enum class CameraKind { kChase, kTop, kFixed };
 
-/// Throws std::invalid_argument, naming the cameras there are.
+/// The camera of this name. Throws std::invalid_argument on any other name, listing the cameras.
 [[nodiscard]] CameraKind camera_kind(const std::string& name);
 
 struct PictureSize {
@@ -29,20 +29,22 @@ struct View {
   SpacePoint forward{};
   SpacePoint up{};
   SpacePoint right{};
-  double distance = 1.0;     ///< m, to what it looks at
+  double distance = 1.0;     ///< m, to its target
   double near_plane = 0.05;  ///< m
   double far_plane = 500.0;  ///< m
-  double half_height = 0.0;  ///< m, of the picture in the near plane
-  double half_width = 0.0;   ///< m, the same
+  double half_height = 0.0;  ///< m, half the picture's height in the near plane
+  double half_width = 0.0;   ///< m, half its width in the near plane
   int width = 0;             ///< pixels
   int height = 0;            ///< pixels
 };
 
-/// From behind and above the vehicle at `pose`, which stands `distance` metres from the camera.
+/// From behind and above the vehicle at `pose`, towards a point ahead of it on the ground that is
+/// `distance` metres from the camera.
 [[nodiscard]] View chase_view(const PlanarPose& pose, double distance, const PictureSize& size);
 
-/// From before and above a rail along x, on which the vehicle at `pose` stands: along y, with the
-/// point `height` metres above the vehicle's place on the ground in the middle.
+/// From above and to the side of a rail along x that carries the vehicle at `pose`: the camera
+/// looks along y at the point `height` metres above the vehicle's place on the ground, `distance`
+/// metres away.
 [[nodiscard]] View rail_view(const PlanarPose& pose, double height, double distance,
                              const PictureSize& size);
 
@@ -50,7 +52,7 @@ struct View {
 [[nodiscard]] View region_view(CameraKind kind, const PlanarRectangle& region,
                                const PictureSize& size);
 
-/// Where `point` is drawn; nothing when it is behind the camera.
+/// Where `point` is drawn; empty if it is behind the camera.
 [[nodiscard]] std::optional<PixelPoint> project(const View& view, const SpacePoint& point);
 
 /// `point` in the camera's own axes: right, up, and the distance along the line of sight.

@@ -22,15 +22,15 @@ constexpr std::array<Colour, 11> kPlasma{{{0.050F, 0.030F, 0.528F},
                                           {0.940F, 0.975F, 0.131F}}};
 constexpr double kPalestShare = 0.86;
 
-// Lightness falls evenly (CIE L* about 90, 75, 60, 46, 31), so that the order is seen with any
-// colour vision; pale and blue is calm, dark and red is not.
+// Lightness falls evenly (CIE L* about 90, 75, 60, 46, 31), so that the order is visible with any
+// colour vision; pale blue is calm, dark red alarming.
 constexpr std::array<Colour, 5> kRisk{{{0.70F, 0.93F, 0.87F},
                                        {0.42F, 0.75F, 0.86F},
                                        {0.45F, 0.53F, 0.83F},
                                        {0.60F, 0.27F, 0.60F},
                                        {0.56F, 0.02F, 0.13F}}};
-// From crimson over sand to teal: none of the stages' colours, and of a lightness that rises and
-// falls, so that its ends differ from its middle with any colour vision.
+// From crimson through sand to teal: distinct from the colours of the stages, with a lightness that
+// rises and falls, so that the ends differ from the middle with any colour vision.
 constexpr std::array<Colour, 3> kClearance{
     {{0.76F, 0.08F, 0.16F}, {0.78F, 0.68F, 0.46F}, {0.02F, 0.50F, 0.47F}}};
 

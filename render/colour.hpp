@@ -15,7 +15,7 @@ struct Colour {
   [[nodiscard]] constexpr Colour with_alpha(float value) const { return {red, green, blue, value}; }
 };
 
-/// `first` at share 0, `second` at share 1, linear between; the opacity too.
+/// `first` at share 0, `second` at share 1, linear between, including the opacity.
 [[nodiscard]] constexpr Colour mix(const Colour& first, const Colour& second, float share) {
   return {first.red + share * (second.red - first.red),
           first.green + share * (second.green - first.green),
@@ -27,17 +27,18 @@ struct Colour {
 /// A share outside [0, 1] is clamped.
 [[nodiscard]] Colour plasma(double share);
 
-/// The colour of `stage` among `stages`: plasma without its palest end, which light ground drowns.
+/// The colour of `stage` among `stages`: plasma without its palest end, which is hard to see on
+/// light ground.
 [[nodiscard]] Colour stage_colour(int stage, int stages);
 
-/// Probabilities up to this one have the calmest colour.
+/// Probabilities up to this value have the calmest colour.
 inline constexpr double kLeastRisk = 1e-6;
 
-/// The colour of a probability (bound) of being unsafe, on a logarithmic scale from kLeastRisk
-/// to 1. One that is not a number counts as 1.
+/// The colour of a probability (bound) of being unsafe, on a logarithmic scale from kLeastRisk to
+/// 1. NaN counts as 1.
 [[nodiscard]] Colour risk_colour(double probability);
 
-/// m, from which on a clearance has the calmest colour.
+/// m; clearances from this value on have the calmest colour.
 inline constexpr double kCalmClearance = 1.0;
 
 /// The colour of a distance (m) to the unsafe set: warning up to 0, calm from kCalmClearance on.

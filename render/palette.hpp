@@ -1,4 +1,4 @@
-// The colours that the scene and its legend share.
+// Colours shared by the scene and its legend.
 #pragma once
 
 #include "render/colour.hpp"

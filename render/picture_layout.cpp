@@ -20,7 +20,7 @@ std::vector<CameraKind> cameras_of(const std::string& camera) {
   return {camera_kind(camera)};
 }
 
-// The part `index` of `count` of `length` pixels, all of the same size.
+// Length of each of `count` equal parts of `length` pixels.
 int part(int length, std::size_t count) {
   return (length - static_cast<int>(count - 1) * kSeparator) / static_cast<int>(count);
 }

@@ -1,4 +1,4 @@
-// All of the public headers of render: pictures of frames, and videos of them.
+// All public headers of render: pictures of frames, and videos of them.
 #pragma once
 
 #include "render/frame.hpp"

@@ -1,4 +1,4 @@
-// What a caller chooses about pictures.
+// Options of pictures.
 #pragma once
 
 #include <string>
@@ -9,29 +9,29 @@
 
 namespace qsmpc::render {
 
-/// What is chosen for a picture as a whole.
+/// Options of a picture as a whole.
 struct PictureOptions {
   int width = 1280;              ///< pixels, at least 64
   int height = 720;              ///< pixels, at least 64
   std::string camera = "chase";  ///< "chase", "top", "fixed", or "split": chase and top
 };
 
-/// An episode as something to be looked at.
+/// An episode to be shown.
 struct EpisodeScene {
   World world;
   std::string mjcf_path;  ///< the vehicle's XML
-  /// m wanted from the chase camera to what it looks at; kept between 5 and 12 vehicle lengths.
+  /// Desired distance of the chase camera from its target, m; limited to 5 to 12 vehicle lengths.
   double chase_distance = 0.0;
-  /// What the top and fixed cameras must show; of no area: the world's bounds, obstacles and
-  /// target.
+  /// The region that the top and fixed cameras must show; if of zero area, the world's bounds,
+  /// obstacles and target.
   PlanarRectangle region{};
-  /// Whether the vehicle stands on a rail along x, so high that none of its joints takes it below
+  /// Whether the vehicle stands on a rail along x, raised so that no joint moves a part of it below
   /// the ground; the chase camera then looks along y.
   bool raised = false;
   std::string heading{};  ///< one line above the episode's panes; empty: none
 };
 
-/// The choices for one episode, see there.
+/// Options for a single episode, see PictureOptions and EpisodeScene.
 struct RenderOptions {
   int width = 1280;
   int height = 720;

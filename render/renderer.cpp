@@ -62,7 +62,7 @@ void copy_into(const Image& part, int x, int y, Image& whole) {
   }
 }
 
-// What is drawn of one episode; all of its panes have the same size.
+// The drawing of one episode; all its panes have the same size.
 struct Stage {
   double chase_distance;
   PlanarRectangle region;
@@ -90,7 +90,7 @@ struct Stage {
     const double nearest = std::max(by_length, kLeastChaseDistance);
     const double distance = std::clamp(chase_distance, nearest, kFarthestChase * nearest);
     const PlanarPose followed = frame.followed.value_or(frame.pose);
-    constexpr double kRaisedAim = 0.6;  // of what the vehicle is raised by
+    constexpr double kRaisedAim = 0.6;  // of the height by which the vehicle is raised
     return raised ? rail_view(followed, kRaisedAim * vehicle.lift(), distance, size)
                   : chase_view(followed, distance, size);
   }
@@ -110,7 +110,7 @@ struct Renderer::Parts {
   PictureOptions options;
   Hud hud;
   PictureLayout layout;
-  OffscreenContext context;  // before what draws with it
+  OffscreenContext context;  // declared before its users
   std::vector<std::unique_ptr<Stage>> stages;
   SmoothingWorkspace smoothing;
   Image pane_picture;
@@ -130,7 +130,7 @@ struct Renderer::Parts {
     return stages[pane.episode]->view(frame, pane);
   }
 
-  // In the picture; nothing when it is behind the camera.
+  // In pixels of the picture; empty if it is behind the camera.
   [[nodiscard]] std::optional<PixelPoint> place(const Frame& frame, const PaneLayout& pane,
                                                 const SpacePoint& point) const {
     std::optional<PixelPoint> at = project(view(frame, pane), point);
@@ -138,7 +138,7 @@ struct Renderer::Parts {
     return at;
   }
 
-  // What a banner must not cover.
+  // Points that a banner must not cover.
   [[nodiscard]] std::vector<PixelPoint> main_places(const Frame& frame,
                                                     const PaneLayout& pane) const {
     const Stage& stage = *stages[pane.episode];
@@ -147,7 +147,7 @@ struct Renderer::Parts {
                                       SpacePoint{frame.pose.x, frame.pose.y, height},
                                       SpacePoint{stage.target.x, stage.target.y, 0.0},
                                       SpacePoint{stage.target.x, stage.target.y, kPostHeight}};
-    // Of a system on a rail the pose is the place below the rail.
+    // The pose of a system on a rail is the place below the rail.
     if (const auto top = stage.vehicle.top(); stage.raised && top) points.push_back(*top);
     std::vector<PixelPoint> places;
     for (const SpacePoint& point : points) {

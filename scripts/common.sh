@@ -1,5 +1,5 @@
-# Shared by the scripts beside it; to be sourced. Puts them in the project's root; `caller` is the
-# folder that they were called from.
+# Shared by the scripts next to it; to be sourced. Changes to the project's root; `caller` is the
+# folder from which the script was called.
 set -euo pipefail
 caller=$PWD
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -7,14 +7,14 @@ cd "$root"
 
 say() { printf '\n==> %s\n' "$*"; }
 
-# fail MESSAGE: the line that says what to do, and the end.
+# fail MESSAGE: prints what to do, and exits.
 fail() {
   printf '\n%s: %s\n' "$(basename "$0")" "$*" >&2
   exit 1
 }
 
-# install_packages LIST…: installs what is missing of the Debian packages named in the files. npm may
-# have come with Node.js instead of as a package of its own, which the two then exclude.
+# install_packages LIST…: installs the missing Debian packages named in the files. npm may have come
+# with Node.js instead of as a separate package, and the two exclude each other.
 install_packages() {
   command -v dpkg-query >/dev/null || fail "this script installs Debian packages; elsewhere, install what $* name and build with: cmake --preset release && cmake --build --preset release"
   local missing=() package
@@ -44,20 +44,20 @@ install_packages() {
   rm -f "$log"
 }
 
-# remember_objects: lets builds that follow take what was compiled before, of the same sources with the
-# same options in any folder, from ccache, where that is installed.
+# remember_objects: lets subsequent builds reuse objects compiled from the same sources with the
+# same options in any folder, by ccache if it is installed.
 remember_objects() {
   command -v ccache >/dev/null || return 0
   export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
-  # Paths as seen from the build's folder. What counts is the preprocessed source, which holds the
-  # precompiled headers' text: batches name their sources by whole paths, and the same header is never
-  # precompiled to the same bytes.
+  # Paths relative to the build folder. The hash covers the preprocessed source, which includes the
+  # text of the precompiled headers: batches name their sources by absolute paths, and precompiling
+  # the same header never gives the same bytes.
   export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_NODIRECT=1 CCACHE_PCH_EXTSUM=1
   export CCACHE_SLOPPINESS=pch_defines,time_macros
 }
 
-# name_precompiled PRESET: the names by which ccache knows the precompiled headers of a build, GCC's
-# and Clang's.
+# name_precompiled PRESET: the names by which ccache knows a build's precompiled headers, for GCC
+# and Clang.
 name_precompiled() {
   local header
   while read -r header; do

@@ -1,9 +1,9 @@
-# Lists the suites of a test program, or with EACH its tests, and writes for ctest one test for each.
+# Lists the suites of a test program (with EACH its tests), and writes one ctest test for each.
 #
 #   cmake -D PROGRAM=… -D NAME=… -D EACH=… -D FILE=… -P discover_suites.cmake
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests
                 OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
-# What follows a # is the value or type of a parameter; brackets and semicolons would join lines.
+# After a # comes the value or type of a parameter; its brackets and semicolons would join lines.
 string(REGEX REPLACE "#[^\n]*" "" listed "${listed}")
 string(REGEX MATCHALL "[^\n]+" lines "${listed}")
 set(tests "")

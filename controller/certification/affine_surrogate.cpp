@@ -23,11 +23,11 @@ StageError lesser(const StageError& one, const StageError& other) {
   return {.bounds = one.bounds.cwiseMin(other.bounds)};
 }
 
-/// sizes · bounds, where a coordinate of which nothing is known is infinite and does not matter to
-/// those that do not depend on it (0 · ∞ = 0).
+/// sizes · bounds with 0 · ∞ = 0: an unknown coordinate, whose bound is infinite, does not affect
+/// those that do not depend on it.
 StageError::Bounds product(const Eigen::Ref<const Eigen::MatrixXd>& sizes,
                            const Eigen::Ref<const StageError::Bounds>& bounds) {
-  // Coefficient by coefficient: these are too small for anything else.
+  // A coefficient-wise product: the matrices are too small for a blocked one to pay.
   if (bounds.allFinite()) return sizes.lazyProduct(bounds);
   StageError::Bounds result = StageError::Bounds::Zero(sizes.rows(), StageError::kColumns);
   for (Eigen::Index column = 0; column < StageError::kColumns; ++column) {
@@ -41,12 +41,12 @@ StageError::Bounds product(const Eigen::Ref<const Eigen::MatrixXd>& sizes,
   return result;
 }
 
-/// Bounds of an error after a map whose entries are at most `sizes` in size.
+/// Bounds of an error after a linear map whose entries are at most `sizes` in absolute value.
 StageError moved(const Eigen::MatrixXd& sizes, const StageError& error) {
   return {.bounds = product(sizes, error.bounds)};
 }
 
-/// `error` in the event in which it is at most `largest`: this bounds norms that are unknown.
+/// `error` on the event that it is at most `largest`, which then bounds its unknown norms.
 StageError where_limited(StageError error) {
   for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
     error.higher(k) = error.higher(k).array().isFinite().select(error.higher(k), error.largest());
@@ -54,7 +54,8 @@ StageError where_limited(StageError error) {
   return error;
 }
 
-/// Residuals of all stages so far, each with its bounds and the map that takes it to the present.
+/// Residuals of all stages so far, each with its bounds and the map that takes it to the current
+/// stage.
 class CarriedErrors {
  public:
   /// For at most `count` residuals of `dim` coordinates.
@@ -64,15 +65,15 @@ class CarriedErrors {
         sizes_(dim, dim * count),
         bounds_(dim * count, StageError::kColumns) {}
 
-  /// Takes all of them on by `transition`.
+  /// Propagates all of them by `transition`.
   void carry(const Eigen::MatrixXd& transition) {
-    // `sizes_` serves for what must not be written where it is still read.
+    // `sizes_` is scratch here: the product must not overwrite its own operand.
     sizes_.leftCols(used_) = transition.lazyProduct(maps_.leftCols(used_));
     maps_.leftCols(used_) = sizes_.leftCols(used_);
     sizes_.leftCols(used_) = maps_.leftCols(used_).cwiseAbs();
   }
 
-  /// One more, of the present.
+  /// Adds a residual of the current stage.
   void add(const StageError& error) {
     maps_.middleCols(used_, dim_).setIdentity();
     sizes_.middleCols(used_, dim_).setIdentity();
@@ -80,7 +81,7 @@ class CarriedErrors {
     used_ += dim_;
   }
 
-  /// Bounds of their sum in the present.
+  /// Bounds of their sum at the current stage.
   [[nodiscard]] StageError sum() const {
     return {.bounds = product(sizes_.leftCols(used_), bounds_.topRows(used_))};
   }
@@ -96,7 +97,7 @@ class CarriedErrors {
 /// The recursion from stage to stage: the law, and the error
 ///     x − z = Σ_j Φ_{k,j+1} (r_j(x_j) + e_j − m_j),   r_j(x_j) = r_j(z_j) + [r_j(x_j) − r_j(z_j)],
 /// with Φ the products of the affine maps' linear parts and e_j the model error, if there is one,
-/// whose known offset m_j moves z, too.
+/// whose known offset m_j also shifts z.
 class SurrogateRecursion {
  public:
   SurrogateRecursion(const PredictedMotion& motion, double core, const PathTilt& tilt)
@@ -106,7 +107,8 @@ class SurrogateRecursion {
         tilted_(tilt),
         error_(StageError::none(law_.mean.size())),
         past_(law_.mean.size(), motion.policy.horizon() + 1) {
-    // Then a residual is known on the whole space, and only its changes need the core.
+    // If the fit holds everywhere, the residual is known on the whole space, and only its
+    // differences r(x) − r(z) need the core.
     fits_everywhere_ =
         std::all_of(core_.affine.begin(), core_.affine.end(), [](bool one) { return one; });
     if (const std::optional<models::UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
@@ -117,7 +119,7 @@ class SurrogateRecursion {
     tilted_.start(law_);
   }
 
-  /// The surrogate of the present stage, with `region` as far as the next step tells.
+  /// The surrogate of the current stage; its `transition` and `region` follow from the next step.
   [[nodiscard]] SurrogateStage stage() const {
     const Eigen::Index dim = law_.mean.size();
     SurrogateStage stage{.law = law_,
@@ -136,11 +138,11 @@ class SurrogateRecursion {
   /// Takes the step of stage `stage` and completes `before`, the surrogate before it. False once
   /// nothing finite is known.
   bool step(Eigen::Index stage, SurrogateStage& before) {
-    // All that rests on what this leaves is in the event that is inside at the next stage.
+    // Everything that uses this is conditional on the event that the next stage is inside.
     const StageError before_step = where_limited(error_);
     const std::vector<InputLinearisation> inputs =
         linearise_inputs(motion_, stage, law_, before_step);
-    // A plan that was lost has no boxes to fit anything over.
+    // With non-finite feedback there is no box to fit over.
     if (!std::all_of(inputs.begin(), inputs.end(), [](const InputLinearisation& input) {
           return std::isfinite(input.mean) && std::isfinite(input.deviation);
         })) {
@@ -165,7 +167,8 @@ class SurrogateRecursion {
       own = added(own, cut.bound);
     }
     carry(fit.transition, added(own, difference));
-    // Where feedback is clamped and large, the step's own slopes may grow less than the products'.
+    // Where the feedback is clamped and large, the step's own slopes may give less growth than the
+    // products of the affine maps.
     if (uses_core) {
       StageError slopes = moved(fit.growth, before_step);
       slopes.mean_square() += fit.closed_form;
@@ -180,17 +183,18 @@ class SurrogateRecursion {
   }
 
  private:
-  /// How many model errors there are along the horizon, that of the belief with them.
+  /// The number of model errors along the horizon, including that of the belief.
   [[nodiscard]] Eigen::Index error_count() const {
     return motion_.policy.horizon() + static_cast<Eigen::Index>(motion_.belief_error != nullptr);
   }
 
-  /// The surrogate takes the known offset of `error` with the state.
+  /// Shifts the surrogate by the known offset of `error`, like the state.
   void move_mean(const ModelError& error) {
     if (error.offset.size() > 0) law_.mean += error.offset;
   }
 
-  /// The state has `error` beside the belief at stage 0, and its offset less beside the surrogate.
+  /// At stage 0 the state differs by `error` from a variable with the belief's law, and by `error`
+  /// less its offset from the surrogate.
   void start_from(const ModelError& error) {
     const TruncatedError cut = truncate_error(error, error_count(), core_.reach);
     error_ = cut.bound;
@@ -199,8 +203,8 @@ class SurrogateRecursion {
     move_mean(error);
   }
 
-  /// Bounds of r(x) − r(z) where x − z has the bounds `error`; over the region `largest` holds of
-  /// r(x) itself.
+  /// Bounds of r(x) − r(z) where x − z has the bounds `error`. Its `largest` is zero because that
+  /// of the fit's residual bounds |r(x)| itself over the region.
   [[nodiscard]] static StageError residual_difference(
       const StageError& error, const StatisticalLinearisation& fit,
       const std::vector<InputLinearisation>& inputs) {
@@ -216,7 +220,7 @@ class SurrogateRecursion {
     return difference;
   }
 
-  /// Adds this stage's residual, bounded by `bound`, to those carried along.
+  /// Propagates the residuals of earlier stages and adds this stage's, bounded by `bound`.
   void carry(const Eigen::MatrixXd& transition, const StageError& bound) {
     past_.carry(transition);
     past_.add(bound);
@@ -250,7 +254,7 @@ Eigen::Matrix2d of_position(const models::UnicycleStructure& unicycle,
   return position;
 }
 
-/// Covariance of what of (x, y) is independent of the heading, for N(0, covariance).
+/// Covariance of the part of (x, y) that is independent of the heading, under N(0, covariance).
 Eigen::Matrix2d beside_heading(const models::UnicycleStructure& unicycle,
                                const Eigen::MatrixXd& covariance) {
   const double variance = covariance(unicycle.heading, unicycle.heading);
@@ -285,7 +289,7 @@ std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion, dou
 
 Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index stage,
                                      const std::vector<Eigen::Index>& axes, const PathTilt& tilt) {
-  // What a model error does of the past is not known.
+  // A model error may depend on the past in an unknown way.
   if (motion.model_error != nullptr || motion.belief_error != nullptr) {
     return motion.noise_covariance;
   }
@@ -293,14 +297,15 @@ Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index
   const bool always_open = open_loop(motion.policy);
   const bool heading =
       unicycle && std::find(axes.begin(), axes.end(), unicycle->heading) != axes.end();
-  // The last noise is independent of all that was before it; tilted, a part of it is.
+  // The last noise is independent of everything before it; under a tilt, a part of it is.
   Eigen::MatrixXd last = independent_part(motion.noise_covariance, tilt, stage);
   if (!unicycle || (heading && !always_open)) return last;
-  // The position's error is made of the headings before the last step. Open loop nothing but their
-  // own noise moves them; with feedback the position of stage k − 2 is the last that can, so that
-  // the noise which came into that of k − 1 still is independent. Where the heading itself is
-  // restricted, what moves it with the position must not count either.
-  // A tilt that concerns headings alone leaves what is beside them as it was.
+  // The position's error depends on the headings before the last step. In open loop only the
+  // headings' own noise moves them; with feedback the position of stage k − 2 is the last that can,
+  // so that the noise which entered the position of stage k − 1 is still independent. Where the
+  // heading itself is restricted, noise of the position that is correlated with it must not count
+  // either.
+  // A tilt that concerns only headings does not change the part independent of them.
   Eigen::Matrix2d sum = heading ? beside_heading(*unicycle, last) : of_position(*unicycle, last);
   double noises = 0.0;
   for (Eigen::Index block = always_open ? 1 : std::max<Eigen::Index>(1, stage - 1); block < stage;

@@ -98,7 +98,7 @@ std::vector<StageCertificate> certify(const PredictedMotion& motion, const Unsaf
         if (table[i].is_bound) certificate.value = std::min(certificate.value, figure);
       }
     }
-    // Of equal bounds the simplest is named.
+    // Among equal bounds, name the simplest.
     for (std::size_t i = table.size(); i-- > 0;) {
       if (!table[i].is_bound) continue;
       // Where no bound is a number up to 1, the value is 1 and any of them names it.

@@ -1,4 +1,4 @@
-// What the bounds of one motion are worked out from, and what several of them need.
+// The inputs of the bounds of one motion, and the intermediate results that several bounds share.
 #pragma once
 
 #include <optional>
@@ -26,15 +26,15 @@ class CertificateProblem {
   [[nodiscard]] CertificateEffort effort() const { return effort_; }
   [[nodiscard]] const Executor& run() const { return run_; }
 
-  /// Of the particles of stage k + 1 from the unsafe set.
+  /// Clearances of the particles of stage k + 1 from the unsafe set.
   [[nodiscard]] const Eigen::VectorXd& clearance(std::size_t k) const { return clearances_[k]; }
-  /// C3 and C4 of stages 1 … horizon, which come from one search. Worked out by the first who asks;
-  /// not to be asked side by side.
+  /// C3 and C4 of stages 1 … horizon, from one search. Computed in the first call; not thread-safe.
   [[nodiscard]] const SurrogateBounds& surrogate_bounds() const;
-  /// C5 of the same; likewise.
+  /// C5 of the same stages. Computed in the first call; not thread-safe.
   [[nodiscard]] const ConditionedBounds& conditioned_bounds() const;
-  /// What stages 1 … horizon add to the probability of being unsafe at any of them: by C3 and C4 as
-  /// they are, or, with every effort, conditioned, whichever is less in all. Likewise.
+  /// What stages 1 … horizon add to the probability of being unsafe at any of them: from C3 and C4
+  /// as they are or, with CertificateEffort::kEvery, conditioned, whichever has the lesser sum.
+  /// Computed in the first call; not thread-safe.
   [[nodiscard]] const std::vector<double>& first_entries() const;
 
  private:

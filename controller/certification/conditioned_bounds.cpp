@@ -12,21 +12,22 @@
 namespace qsmpc::controller {
 namespace {
 
-// How near a place the first functional is held, in its deviations, the second and the third …
+// How near a grid point the first, second and third functionals are held, in their deviations …
 constexpr std::array kSpreads = {0.25, 0.35, 0.5};
-// … and how much nearer, once or twice, where that makes errors less by this share.
+// … and the factor by which this is narrowed, once or twice, where that reduces the errors by this
+// share.
 constexpr double kNarrowing = 0.4;
 constexpr double kNarrowingGain = 0.25;
-// The most places to work out beyond the first grid, and the most parts of the unsafe set at all
-// places and stages together.
+// The largest number of grid points beyond the first grid, and of parts of the unsafe set over all
+// grid points and stages.
 constexpr double kMostPlaces = 500.0;
 constexpr double kMostParts = 1e5;
-// A functional has to make errors less by this share.
+// A functional must reduce the errors by this share.
 constexpr double kLeastGain = 0.1;
-// A bound that is within this factor of what it would be without any error, and this much, is left.
+// A bound within this factor, plus this margin, of its value without any error is not conditioned.
 constexpr double kTightEnough = 1.25;
 constexpr double kSmallEnough = 1e-6;
-// So is one that would be this even without any error.
+// Neither is one whose value without any error exceeds this.
 constexpr double kHopeless = 0.5;
 
 using PathWeights = std::vector<Eigen::VectorXd>;
@@ -42,7 +43,7 @@ PathWeights weights_of(const std::vector<SurrogateStage>& stages, std::size_t st
   return weights;
 }
 
-/// The same of one coordinate's own noise only.
+/// The same, restricted to one coordinate's own noise.
 PathWeights own_noise(PathWeights weights, Eigen::Index axis) {
   for (Eigen::VectorXd& block : weights) {
     const double own = block[axis];
@@ -52,8 +53,8 @@ PathWeights own_noise(PathWeights weights, Eigen::Index axis) {
   return weights;
 }
 
-/// What may be held: coordinates that bend the motion and the inputs' feedback, at the first stage,
-/// the middle one and the last.
+/// Candidate functionals: the coordinates in which the motion is nonlinear and the inputs'
+/// feedback, at the first, middle and last known stages.
 std::vector<PathWeights> candidates(const PredictedMotion& motion,
                                     const std::vector<SurrogateStage>& stages) {
   const Eigen::Index dim = motion.belief.mean.size();
@@ -81,7 +82,8 @@ std::vector<PathWeights> candidates(const PredictedMotion& motion,
   return found;
 }
 
-/// Errors of all stages and coordinates in relation to the deviations in `whole`.
+/// Sum of the errors of all stages and coordinates relative to the deviations in `whole`, each at
+/// most 1.
 double relative_errors(const std::vector<SurrogateStage>& stages,
                        const std::vector<SurrogateStage>& whole) {
   double sum = 0.0;
@@ -97,13 +99,13 @@ double relative_errors(const std::vector<SurrogateStage>& stages,
   return sum;
 }
 
-/// What is held, and how near a place.
+/// The functionals held, and how near a grid point.
 struct Held {
   PathFunctionals functionals{};
   Eigen::VectorXd spreads{};
 };
 
-/// The same with the functionals held at a few places, as they are met.
+/// The same with the functionals held, averaged over a few places.
 double held_errors(const PredictedMotion& motion, const Held& held,
                    const std::vector<SurrogateStage>& whole) {
   PathTilt tilt{.functionals = held.functionals, .centre = {}, .spreads = held.spreads};
@@ -115,12 +117,13 @@ double held_errors(const PredictedMotion& motion, const Held& held,
   return sum;
 }
 
-/// How many places a grid has.
+/// Number of points of a grid.
 double places_of(const Eigen::VectorXd& spreads) {
   return static_cast<double>(tilt_grid(spreads).weights.size());
 }
 
-/// Holds the last functional nearer where this makes errors much less, with `most` places at most.
+/// Narrows the spread of the last functional where this reduces the errors much, with at most
+/// `most` grid points.
 void narrow(const PredictedMotion& motion, const std::vector<SurrogateStage>& whole, double errors,
             double most, Held& held) {
   for (int times = 0; times < 2; ++times) {
@@ -134,9 +137,9 @@ void narrow(const PredictedMotion& motion, const std::vector<SurrogateStage>& wh
   }
 }
 
-/// Adds the functional that, held near a place with those there are, makes the surrogate's errors
-/// least in relation to its deviations. False where none gains much, or where more than `most`
-/// places would be needed.
+/// Adds the functional that, held together with the existing ones, minimises the surrogate's errors
+/// relative to its deviations. Returns false where none gains much, or where more than `most` grid
+/// points would be needed.
 bool hold_one_more(const PredictedMotion& motion, const std::vector<SurrogateStage>& whole,
                    double most, Held& held) {
   const Eigen::Index count = held.spreads.size();
@@ -162,13 +165,13 @@ bool hold_one_more(const PredictedMotion& motion, const std::vector<SurrogateSta
   return true;
 }
 
-/// Bounds of all stages from the tilted laws of a grid, and what they would be without errors.
+/// Bounds of all stages from the tilted laws of a grid, and their values without errors.
 struct TiltedSums {
   Eigen::VectorXd bounds;
   Eigen::VectorXd without_errors;
 };
 
-/// known: 0 at stages that are not asked for.
+/// known: 0 at stages that are not requested.
 TiltedSums tilted_sums(const PredictedMotion& motion, const UnsafeSet& unsafe, const Held& held,
                        const std::vector<RegionProbability>& known, const Executor& run) {
   const TiltGrid grid = tilt_grid(held.spreads);
@@ -205,7 +208,7 @@ std::vector<double> tilted_entries(const PredictedMotion& motion, const UnsafeSe
         .functionals = held.functionals, .centre = grid.centres.col(i), .spreads = held.spreads};
     const std::vector<double> found = first_entry_bounds(
         unsafe, surrogate_bounds(motion, unsafe, CertificateEffort::kEvery, run_in_turn, tilt));
-    // Of one law all stages so far are at most 1.
+    // Under each law the entries of all stages so far sum to at most 1.
     double before = 0.0;
     for (Eigen::Index k = 0; k < entries.rows(); ++k) {
       const double sum = std::min(1.0, before + found[static_cast<std::size_t>(k)]);
@@ -227,7 +230,7 @@ ConditionedBounds conditioned_bounds(const PredictedMotion& motion, const Unsafe
   ConditionedBounds result{.stages = std::vector<double>(plain.bounds.size(), 1.0), .entries = {}};
   std::vector<double>& bounds = result.stages;
   if (motion.model_error != nullptr || motion.belief_error != nullptr) return result;
-  // What each stage's bound is, and would be without any error.
+  // Each stage's bound, and its value without any error.
   Eigen::VectorXd least(horizon);
   Eigen::VectorXd lowest(horizon);
   for (Eigen::Index k = 0; k < horizon; ++k) {

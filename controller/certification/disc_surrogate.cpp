@@ -10,10 +10,10 @@
 namespace qsmpc::controller {
 namespace {
 
-// |e^{ia} − e^{ib}| is at most |a − b|, and this.
+// |e^{ia} − e^{ib}| is at most |a − b|, and at most this.
 constexpr double kMostTurn = 2.0;
 
-/// Sizes of the turn's x and y components.
+/// Absolute x and y components of the offset's mean direction.
 struct TurnShares {
   double along_x;
   double along_y;
@@ -74,8 +74,8 @@ Eigen::MatrixXd disc_smoothing(const PredictedMotion& motion, Eigen::Index stage
   std::vector<Eigen::Index> with_heading = axes;
   if (std::find(axes.begin(), axes.end(), heading) == axes.end()) with_heading.push_back(heading);
   Eigen::MatrixXd smoothing = smoothing_covariance(motion, stage, with_heading, tilt);
-  // The turn's residual depends on the surrogate's heading, of which the part must be independent:
-  // what of it is not explained by its own heading is.
+  // The turn's residual depends on the surrogate's heading, of which the smoothing part must be
+  // independent: this is what the part's own heading does not explain.
   return given_heading(std::move(smoothing), heading);
 }
 

@@ -1,6 +1,7 @@
-// The surrogate of a stage as one disc of the body sees it: a Gaussian for the state with the
-// disc's centre in place of its position, and what separates the two. The turn R(φ) o of a disc off
-// the position is treated as a unicycle's step is. Derivation: docs/theory/surrogate.md, section 8.
+// The surrogate of a stage for one disc of the body: a Gaussian for the state with the disc's
+// centre in place of its position, and bounds on the difference between the two. The rotated offset
+// R(φ) o of a disc away from the position is treated like a unicycle's step. Derivation:
+// docs/theory/surrogate.md, section 8.
 #pragma once
 
 #include <functional>
@@ -17,12 +18,12 @@ namespace qsmpc::controller {
 
 struct DiscSurrogate {
   Gaussian law;           ///< of the Gaussian
-  Eigen::MatrixXd turn;   ///< it is turn · z + a constant; empty where that is z itself
+  Eigen::MatrixXd turn;   ///< the Gaussian is turn · z + a constant; empty if it is z itself
   Eigen::VectorXd error;  ///< bounds √E[|difference|²; inside], coordinate by coordinate
   HigherNorms higher;     ///< the same for the norms of higher order
 };
 
-/// `stage` must be known: a finite law.
+/// The surrogate for a disc. `stage` must have a finite law.
 [[nodiscard]] DiscSurrogate disc_surrogate(const SurrogateStage& stage,
                                            const DiscPlacement& placement);
 

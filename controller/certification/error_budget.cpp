@@ -10,15 +10,15 @@
 namespace qsmpc::controller {
 namespace {
 
-/// An error after a map with this Lipschitz constant. No error stays none, even where no constant
-/// is known (0 · ∞); what is not a number counts as infinite.
+/// An error after a map with this Lipschitz constant. A zero error stays zero even where no
+/// constant is known (0 · ∞ = 0); NaN counts as infinite.
 double carried(double lipschitz, double error) {
   if (error == 0.0) return 0.0;
   const double product = lipschitz * error;
   return std::isnan(product) ? kInfinity : product;
 }
 
-/// What a model error adds in W2, none where there is none.
+/// What a model error adds in W2; 0 if there is none.
 double radius_of(const ModelError* error) { return error == nullptr ? 0.0 : error->radius(); }
 
 /// √Σ ρ_i |f(c_i, u(c_i)) − f(c'_i, u(c'_i))|², c' the particles moved into `region`.
@@ -36,11 +36,11 @@ double projection_w2(const PredictedMotion& motion, Eigen::Index stage, const Bo
   const Eigen::VectorXd squares =
       (stepped - motion.prediction.stepped[stage]).colwise().squaredNorm().transpose();
   const double square = particles.weights.dot(squares);
-  // Particles that are not finite are infinitely far from anything.
+  // Non-finite particles are infinitely far from anything.
   return std::isfinite(square) ? std::sqrt(square) : kInfinity;
 }
 
-/// Lipschitz constant of the closed loop at a stage, and what it holds for.
+/// Lipschitz constant of the closed loop at a stage, and the cost of restricting it to a region.
 struct StageLipschitz {
   double constant = kInfinity;
   double projection = 0.0;  ///< W2 that particles outside of the region add
@@ -82,12 +82,12 @@ std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
     StageLipschitz lipschitz =
         global ? StageLipschitz{.constant = motion.dynamics.lipschitz(motion.policy.gains[k])}
                : on_region(motion, k, surrogates);
-    // Particles that are the law itself need no constant, and so no region.
+    // Particles that represent the law exactly need no constant, and so no region.
     if (budgets[k].total == 0.0) {
       lipschitz.projection = 0.0;
       lipschitz.leaving = budgets[k].leaving;
     }
-    // Particles that are not finite are infinitely far from any law.
+    // Non-finite particles are infinitely far from any law.
     const double compression = motion.prediction.maps[k].compression_w2;
     const bool usable =
         motion.prediction.stages[k + 1].locations.allFinite() && !std::isnan(compression);
@@ -106,7 +106,7 @@ std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
     next.total = std::hypot(next.before_noise, motion.noise_w2) + lost;
     const double kept = carried(std::min(1.0, lipschitz.constant), unstretched);
     unstretched = std::hypot(kept + apart, motion.noise_w2) + lost;
-    // Infinite errors are blamed on the dynamics, unless the particles are lost anyway.
+    // Infinite errors are attributed to the dynamics, unless the particles are lost anyway.
     next.dynamics = std::isinf(unstretched) ? 0.0 : next.total - unstretched;
   }
   return budgets;

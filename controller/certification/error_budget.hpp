@@ -1,5 +1,5 @@
-// How far the particles can be from the true law of the state, the model's or, where a model error
-// is given, the plant's: the 2-Wasserstein error along the horizon, split by its sources.
+// How far the particles can be from the true law of the state (the model's or, where a model error
+// is given, the plant's): the 2-Wasserstein error along the horizon, split by its sources.
 // Derivation: docs/theory/certificates.md, section 1.
 #pragma once
 
@@ -18,7 +18,7 @@ struct StageBudget {
   double belief = 0.0;
   double noise = 0.0;
   double compression = 0.0;
-  double model = 0.0;     ///< what the plant adds to the model; 0 without a model error
+  double model = 0.0;     ///< error of the model; 0 without a model error
   double dynamics = 0.0;  ///< how much of the total is due to the dynamics stretching distances
   double total = 0.0;
   double lipschitz = 1.0;  ///< of the closed loop from this stage to the next; 1 at the last stage
@@ -26,7 +26,7 @@ struct StageBudget {
   double before_noise = 0.0;
   /// Where the dynamics have no global Lipschitz constant: bounds the probability that the state
   /// has left the regions on which the constants hold. The distances are then those to the law of
-  /// the dynamics projected to these regions, from which the state's differs by no more than this.
+  /// the dynamics projected onto these regions, from which the state's law differs by at most this.
   double leaving = 0.0;
 };
 
@@ -34,10 +34,10 @@ struct StageBudget {
 /// loop, global or, where there is none, on the region that `affine_surrogates` gives,
 ///     ζ_0 = W_belief,  ζ_{k+1} = √((L_k ζ_k + W_projection + W_model)² + W_noise²) +
 ///     W_compression,
-/// with W_model the model error's radius in the stage's period; that of the belief's error, where
-/// it has one, stands in ζ_0, too. The noise is independent of the state and of the model error,
-/// and its quantiser centroidal, so that the cross term vanishes; the compression is a triangle
-/// inequality. W_projection is what particles outside of their region cost, zero as a rule.
+/// with W_model the model error's radius in the stage's period; ζ_0 also includes the radius of the
+/// belief's error, if it has one. The cross term vanishes because the noise is independent of the
+/// state and of the model error and its quantiser is centroidal; the compression enters by the
+/// triangle inequality. W_projection is the cost of particles outside their region, usually zero.
 [[nodiscard]] std::vector<StageBudget> error_budget(const PredictedMotion& motion);
 
 }  // namespace qsmpc::controller

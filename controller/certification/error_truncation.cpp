@@ -12,16 +12,16 @@ namespace {
 struct KnownNorm {
   int order;
   double value;
-  double cost;  ///< probability that cuts by it may have along the whole horizon
+  double cost;  ///< probability allotted to truncation by it along the whole horizon
 };
 
-// By order 8, the cut stands 8 times the norm off for 24 coordinates and stages; by order 2 as
-// small a probability would put it at 5000 times.
+// By order 8, the truncation is at 8 times the norm for 24 coordinates and stages; by order 2, the
+// same probability would put it at 5000 times.
 constexpr double kMeanSquareCost = 1e-4;
 constexpr std::array<double, kHigherOrders.size()> kHigherCosts = {1e-5, 1e-6};
 constexpr double kNarrowCost = 1e-3;
 
-/// The highest norm that is known of coordinate i.
+/// The highest-order known norm of coordinate i.
 KnownNorm highest_norm(const ModelError& error, Eigen::Index i) {
   KnownNorm highest{.order = 2, .value = error.root_mean_square[i], .cost = kMeanSquareCost};
   for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
@@ -38,7 +38,7 @@ TruncatedError truncate_error(const ModelError& error, Eigen::Index count, doubl
   TruncatedError cut{.bound = StageError::none(dim)};
   cut.bound.mean_square() = error.root_mean_square;
   for (Eigen::Index i = 0; i < dim; ++i) {
-    // No error is none in every norm.
+    // A zero error is zero in every norm.
     if (error.root_mean_square[i] == 0.0) continue;
     for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
       cut.bound.higher(k)[i] = error.higher[k][i];

@@ -17,16 +17,16 @@
 namespace qsmpc::controller {
 namespace {
 
-// A region that all stages together add less of is left as it is.
+// A region whose shares sum to less than this over all stages is not refined.
 constexpr double kNegligibleEntry = 1e-8;
-// Sizes of errors that are tried, in their norms: any of them gives a bound.
+// Sizes of errors to try, relative to their norms: each gives a bound.
 constexpr int kSizes = 20;
 constexpr double kLeastSize = 1.2;
 constexpr double kSizeRatio = 1.25;
-// By the highest order this one leaves no more than is negligible.
+// By the norm of highest order, errors above this size have negligible probability.
 constexpr double kSafeSize = 10.0;
 
-/// What a disc's centre is at stages 1 …, and how it goes with the stage before.
+/// The surrogates of a disc's centre at stages 1 …, and its covariance with the previous stage.
 struct DiscPath {
   std::vector<DiscSurrogate> stages;
   std::vector<Eigen::MatrixXd> with_last;  ///< Cov(centre, centre of the stage before)
@@ -48,7 +48,8 @@ DiscPath disc_path(const std::vector<SurrogateStage>& surrogates, std::size_t kn
   return path;
 }
 
-/// n·z beyond a threshold, which n·x does not reach otherwise but with a probability of `rest`.
+/// The event that n·z reaches a threshold. Otherwise n·x is in the half-space with a probability of
+/// at most `rest`.
 struct Crossing {
   double mean = 0.0;
   double variance = 0.0;
@@ -75,8 +76,8 @@ double beyond_probability(double mean, double deviation, double threshold) {
   return mean >= threshold ? 1.0 : 0.0;
 }
 
-/// Bounds ‖n·e‖ by norms of e's coordinates. One of which nothing is known does not matter where n
-/// has none of it.
+/// Bounds ‖n·e‖ by norms of e's coordinates. An unknown coordinate does not matter where n is zero
+/// in it.
 double norm_along(const Eigen::VectorXd& n, const Eigen::VectorXd& norms) {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < n.size(); ++i) {
@@ -85,7 +86,8 @@ double norm_along(const Eigen::VectorXd& n, const Eigen::VectorXd& norms) {
   return sum;
 }
 
-/// With the size of the error, one of a few, that leaves least for one stage by itself.
+/// The crossing of `space` with that size of the error, out of a few, that gives the least bound
+/// for the stage by itself.
 Crossing crossing(const DiscSurrogate& centre, const HalfSpace& space) {
   const Eigen::VectorXd& n = space.normal;
   Crossing least{.mean = n.dot(centre.law.mean),
@@ -122,7 +124,7 @@ Crossing crossing(const DiscSurrogate& centre, const HalfSpace& space) {
   return least;
 }
 
-/// P(n·z ≥ its threshold now, and below it the stage before).
+/// P(n·z ≥ its threshold now, and below its threshold at the previous stage).
 double entering_probability(const Crossing& now, const Crossing& before, double covariance) {
   Eigen::Matrix2d law;
   law << now.variance, covariance, covariance, before.variance;
@@ -133,8 +135,9 @@ double entering_probability(const Crossing& now, const Crossing& before, double 
   return std::min(now.beyond, both);
 }
 
-/// What half-spaces about a region make of its stages: how probable it is that one of them is
-/// entered, whatever was before, and from outside of all of them at the stage before.
+/// Per stage, bounds from a cover of a region by half-spaces: on the probability of being in one of
+/// them, whatever came before (`anew`), and of entering one from outside of it at the previous
+/// stage (`after`).
 struct EntryTable {
   Eigen::VectorXd anew;
   Eigen::VectorXd after;
@@ -168,12 +171,12 @@ EntryTable entry_table(const DiscPath& path, const UnsafeRegion& region,
   return table;
 }
 
-/// Each stage either as it is by itself or by the half-spaces, those beside each other together, so
-/// that the sum is least.
+/// Covers each stage either by its own bound or by the half-spaces, which cost only `after` where
+/// they also cover the previous stage, so that the sum is least.
 Eigen::VectorXd least_cover(const Eigen::VectorXd& single, const EntryTable& table) {
   const Eigen::Index count = single.size();
   Eigen::Matrix2Xd costs(2, count);                              // by itself, by half-spaces
-  Eigen::Matrix<bool, 2, Eigen::Dynamic> from_spaces(2, count);  // what the stage before is then
+  Eigen::Matrix<bool, 2, Eigen::Dynamic> from_spaces(2, count);  // the previous stage's choice
   const auto before = [&](Eigen::Index row, Eigen::Index k) {
     return k > 0 ? costs(row, k - 1) : row == 0 ? 0.0 : kInfinity;
   };
@@ -195,7 +198,7 @@ Eigen::VectorXd least_cover(const Eigen::VectorXd& single, const EntryTable& tab
   return cover;
 }
 
-/// The direction that leads into the region fastest, from where the disc is expected at `stage`.
+/// The direction that leads into the region fastest from the disc's expected place at `stage`.
 Eigen::VectorXd direction_into(const UnsafeRegion& region, const DiscPath& path,
                                Eigen::Index stage) {
   const Eigen::VectorXd& mean = path.stages[static_cast<std::size_t>(stage)].law.mean;
@@ -235,7 +238,7 @@ std::vector<double> first_entry_bounds(const UnsafeSet& unsafe, const SurrogateB
           least_cover(single, entry_table(path, *region, direction_into(*region, path, nearest)));
     }
   }
-  // What is no number is no bound.
+  // NaN is not a bound.
   for (std::size_t k = 0; k < known; ++k) {
     const double entry = total[static_cast<Eigen::Index>(k)];
     entries[k] = entry >= 0.0 && entry < 1.0 ? entry : 1.0;

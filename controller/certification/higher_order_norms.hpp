@@ -1,4 +1,4 @@
-// The norms of normal variables that bounds of higher orders than the mean square are made of.
+// Norms of normal variables that enter the bounds of higher order than the mean square.
 #pragma once
 
 #include "controller/measure/normal/norm_orders.hpp"
@@ -15,7 +15,7 @@ struct HigherOrderNorms {
   double cube;         ///< ‖Z³ − 3Z‖_p
 };
 
-/// Worked out once. k < kHigherOrders.size().
+/// The norms of order kHigherOrders[k], computed once. k < kHigherOrders.size().
 [[nodiscard]] const HigherOrderNorms& higher_order_norms(std::size_t k);
 
 }  // namespace qsmpc::controller

@@ -10,7 +10,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// What a region may add without being worked out further.
+// A region's contribution below which its bound is not refined further.
 constexpr double kNegligibleAtStart = 1e-9;
 
 }  // namespace
@@ -27,7 +27,7 @@ double initial_risk(const Gaussian& belief, const UnsafeSet& unsafe) {
                              .region = {}};
   RegionProbability sum;
   for (const DiscView& disc : unsafe.discs()) {
-    // The turn of a disc off the position depends on the heading alone.
+    // The turn of a disc away from the position depends only on the heading.
     const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
         [&](const std::vector<Eigen::Index>& /*axes*/) {
           return disc.placement.at_position()

@@ -11,11 +11,12 @@
 namespace qsmpc::controller {
 namespace {
 
-// Of a functional's variance, what must be left once it is uncorrelated with the others.
+// The share of a functional's variance that must be left once it is uncorrelated with the others.
 constexpr double kLeastFreeShare = 1e-6;
-// The grid's spacing, in deviations of what its sum is smoothed with: δ is 2e^{−2π²/1.8²} = 0.45 %.
+// The grid's spacing, in deviations of the density that smooths its sum: δ is about
+// 2e^{−2π²/1.8²} = 0.45 %.
 constexpr double kSpacing = 1.8;
-// Places beyond this many deviations of their law are left out; they count in full.
+// Grid points beyond this many deviations of their law are omitted; their weight counts in full.
 constexpr double kFarthest = 4.9;
 
 /// Bounds |1 − Σ_i h N(x; ih, τ²)| for every x, where h = spacing · τ.
@@ -24,27 +25,27 @@ double grid_ripple(double spacing) {
   return 2.0 * decay / (1.0 - decay);
 }
 
-/// The places of one functional. Σ h N(c; 0, 1 − w²) N(a; c, w²) over c = ih is N(a; 0, 1) times
-/// the sum of a normal density of deviation τ = w √(1 − w²) over a grid, which is nearly 1.
+/// The grid points of one functional. Σ h N(c; 0, 1 − w²) N(a; c, w²) over c = ih is N(a; 0, 1)
+/// times the sum of a normal density of deviation τ = w √(1 − w²) over a grid, which is nearly 1.
 class GridAxis {
  public:
   explicit GridAxis(double spread)
       : across_(std::sqrt(1.0 - spread * spread)), step_(kSpacing * spread * across_) {}
 
-  /// Places −half … half are within reach.
+  /// Grid points −half … half are within reach.
   [[nodiscard]] int half() const { return static_cast<int>(kFarthest * across_ / step_); }
   [[nodiscard]] double place(int i) const { return i * step_; }
-  /// The place in deviations of the law of the places.
+  /// The grid point in deviations of the grid points' law.
   [[nodiscard]] double deviations(int i) const { return place(i) / across_; }
   [[nodiscard]] double weight(int i) const {
     return step_ / across_ * normal_density(deviations(i));
   }
-  /// Bounds the sum of the weights of all places, also of those out of reach: they are such a grid
-  /// themselves.
+  /// Bounds the sum of the weights of all grid points, including those out of reach: it is itself a
+  /// sum of a normal density over a grid.
   [[nodiscard]] double most_weight() const { return 1.0 + grid_ripple(step_ / across_); }
 
  private:
-  double across_;  ///< deviation of the law of the places
+  double across_;  ///< deviation of the grid points' law
   double step_;    ///< h
 };
 
@@ -94,8 +95,8 @@ Eigen::MatrixXd independent_part(const Eigen::MatrixXd& covariance, const PathTi
   const Eigen::MatrixXd& weights = tilt.functionals.weights[static_cast<std::size_t>(block)];
   if (weights.isZero(0.0)) return covariance;
   const Eigen::MatrixXd& moves = tilt.functionals.moves[static_cast<std::size_t>(block)];
-  // The tilt adds (1/w² − 1) Λ Λᵀ to the precision of all blocks together; of one block given the
-  // others this is the inverse (Woodbury).
+  // The tilt adds (1/w² − 1) Λ Λᵀ to the joint precision of all blocks; the covariance of one block
+  // given the others is the inverse of its diagonal block (Woodbury).
   const Eigen::ArrayXd squares = tilt.spreads.array().square();
   Eigen::MatrixXd inner = weights.transpose() * moves;
   inner.diagonal() += (squares / (1.0 - squares)).matrix();
@@ -130,7 +131,7 @@ TiltGrid tilt_grid(const Eigen::VectorXd& spreads) {
   while (true) {
     Eigen::VectorXd centre(spreads.size());
     double weight = 1.0;
-    double square = 0.0;  // in deviations of the places' law
+    double square = 0.0;  // in deviations of the grid points' law
     for (std::size_t r = 0; r < axes.size(); ++r) {
       centre[static_cast<Eigen::Index>(r)] = axes[r].place(at[r]);
       weight *= axes[r].weight(at[r]);

@@ -1,8 +1,8 @@
-// A change of measure for the noise along a plan: what the law of the path becomes where one or
-// more linear functionals of it are held near a place. A standard normal variable's density is at
-// most (1 + δ) Σ ρ_i N(c_i, w²), so that a probability of the path is at most (1 + δ) Σ ρ_i times
-// that under the tilted laws, under which everything stays Gaussian with smaller deviations.
-// Derivation: docs/theory/conditioning.md.
+// A change of measure for the noise along a plan: the law of the path with one or more of its
+// linear functionals held near given values. As densities, N(0, 1) ≤ Σ ρ_i N(c_i, w²)/(1 − δ), so
+// the probability of an event of the path is at most the sum of its probabilities under the tilted
+// laws, weighted by ρ_i/(1 − δ). Under these laws everything stays Gaussian, with smaller
+// deviations. Derivation: docs/theory/conditioning.md.
 #pragma once
 
 #include <vector>
@@ -23,8 +23,8 @@ struct PathFunctionals {
   [[nodiscard]] Eigen::Index count() const { return weights.empty() ? 0 : weights[0].cols(); }
 };
 
-/// The law under which a ~ N(centre, diag(spreads²)), and what is independent of a has stayed as it
-/// was.
+/// The law under which a ~ N(centre, diag(spreads²)), and everything independent of a keeps its
+/// law.
 struct PathTilt {
   PathFunctionals functionals{};
   Eigen::VectorXd centre{};   ///< r
@@ -33,8 +33,9 @@ struct PathTilt {
   [[nodiscard]] bool empty() const { return functionals.count() == 0; }
 };
 
-/// Adds a functional with these weights to `functionals`, made uncorrelated with those there are
-/// and scaled to the variance 1. False, and nothing is added, where nothing is left of it by then.
+/// Adds a functional with these weights to `functionals`, made uncorrelated with the existing ones
+/// and scaled to variance 1. Returns false and adds nothing if no variance is left after that, up
+/// to rounding.
 [[nodiscard]] bool add_functional(const PredictedMotion& motion,
                                   const std::vector<Eigen::VectorXd>& weights,
                                   PathFunctionals& functionals);
@@ -44,15 +45,16 @@ struct PathTilt {
 [[nodiscard]] Eigen::MatrixXd independent_part(const Eigen::MatrixXd& covariance,
                                                const PathTilt& tilt, Eigen::Index block);
 
-/// Whether ξ_block is independent of all functionals, but for its coordinate `axis` (−1: none).
+/// Whether the functionals' weights on ξ_block are zero except for its coordinate `axis` (−1: all
+/// zero).
 [[nodiscard]] bool concerns_only(const PathTilt& tilt, Eigen::Index block, Eigen::Index axis);
 
-/// Places and weights of tilted laws: Σ ρ_i N(c_i, diag(w²)) is at least (1 − δ) N(0, I)
+/// Centres and weights of tilted laws: Σ ρ_i N(c_i, diag(w²)) is at least (1 − δ) N(0, I)
 /// everywhere.
 struct TiltGrid {
   Eigen::MatrixXd centres{};  ///< r x count
   Eigen::VectorXd weights{};  ///< count
-  double left_out = 0.0;      ///< Σ ρ_i of the places that are too far to be listed
+  double left_out = 0.0;      ///< Σ ρ_i of the centres too far out to be listed
   double factor = 1.0;        ///< 1 / (1 − δ)
 };
 

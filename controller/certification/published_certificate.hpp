@@ -1,4 +1,4 @@
-// What the thesis would say of a plan's safety, for reproductions and comparisons: NOT bounds.
+// The thesis's figures for a plan's safety, for reproductions and comparisons: NOT bounds.
 #pragma once
 
 #include <vector>
@@ -10,16 +10,17 @@
 
 namespace qsmpc::controller {
 
-/// The radii that the thesis would use at stages 0 … horizon, by Eq. 4-4 and 4-6: without noise and
-/// without the feedback, hence too small. Where no global Lipschitz constant is known, it is that
-/// of the closed loop on its region. budgets: as for `certify`.
+/// The radii of the thesis at stages 0 … horizon, by Eq. 4-4 and 4-6: without noise and without
+/// feedback, hence too small. Where no global Lipschitz constant is known, that of the closed loop
+/// on its region is used. budgets: as for `certify`.
 [[nodiscard]] std::vector<double> thesis_radii(const PredictedMotion& motion,
                                                const std::vector<StageBudget>& budgets);
 
-/// Algorithms 3 and 4 of the thesis as printed: NOT an upper bound. The distance is a norm over the
-/// dimensions of the distances to the faces, which overestimates it, and neither obstacles nor the
-/// body count: the vehicle is a point.
-/// (Spending d·m against the radius, instead of d²·m against its square, is loose only.)
+/// Algorithms 3 and 4 of the thesis as printed: NOT an upper bound. The distance is the norm, over
+/// the dimensions, of the distances to the faces, which overestimates it; obstacles and the body
+/// are ignored: the vehicle is a point.
+/// (Spending d·m against the radius, instead of d²·m against its square, only makes the result
+/// loose.)
 [[nodiscard]] double thesis_probability(const DiscreteMeasure& measure, const Box& bounds,
                                         double radius);
 

@@ -12,10 +12,10 @@
 namespace qsmpc::controller {
 namespace {
 
-// Relative to the terms of a difference: what cancellation between them can leave.
+// Bounds the rounding that cancellation in a difference can leave, relative to its terms.
 constexpr double kQuadratureRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-// Quadrature of moments: how far it goes, and what the nodes can leave, relative.
+// Quadrature of moments: its reach in deviations, and a bound on its relative error.
 constexpr int kQuadratureReach = 12;
 constexpr double kQuadratureError = 1e-8;
 
@@ -25,9 +25,9 @@ double power(double base, int exponent) {
   return result;
 }
 
-/// At least E[|q/s|^p; |Z| > reach]. There |q/s| ≤ 3|Z|: a mean within `reach` deviations of E sat
-/// moves it by at most that, Z and the fit by |Z| each, and further outside the clamp is constant
-/// up to the reach. E[Z^p; |Z| > r] is at most 2 r^{p−1} φ(r)/(1 − p/r²).
+/// Upper bound of E[|q/s|^p; |Z| > reach]. There |q/s| ≤ 3|Z|: a mean within `reach` deviations of
+/// E sat contributes at most that, Z and the fit |Z| each; for a mean further away, the clamp is
+/// constant up to the reach. E[Z^p; |Z| > r] is at most 2 r^{p−1} φ(r)/(1 − p/r²).
 double beyond_reach(int order) {
   const double squared = kQuadratureReach * kQuadratureReach;
   return 2.0 * power(3.0, order) * power(kQuadratureReach, order - 1) *
@@ -44,7 +44,7 @@ struct Excess {
 Excess excess(double z) {
   const double tail = normal_cumulative(-z);
   const double density = normal_density(z);
-  // In the tail the two terms nearly cancel, and z² roundings are in the density of z.
+  // In the tail the two terms nearly cancel, and the density of z has z² roundings.
   const double roundings = z > 0.0 ? 1.0 + z * z : 1.0;
   return {.first = std::max(0.0, density - z * tail),
           .second = std::max(0.0, (1.0 + z * z) * tail - z * density),
@@ -62,8 +62,8 @@ struct NormalNode {
 using PanelNodes =
     std::array<NormalNode, 2 * std::tuple_size_v<std::decay_t<decltype(Rule::abscissa())>>>;
 
-/// Over [from, to], at most one deviation: ten nodes leave no more than rounding of what is smooth
-/// there.
+/// Nodes over [from, to], at most one deviation wide: ten integrate what is smooth there exactly up
+/// to rounding.
 PanelNodes panel_nodes(double from, double to) {
   PanelNodes nodes;
   const double half = 0.5 * (to - from);
@@ -80,7 +80,7 @@ PanelNodes panel_nodes(double from, double to) {
 
 constexpr int kUnitPanels = 2 * kQuadratureReach;
 
-/// The panels between whole numbers of deviations, up to the reach.
+/// The panels between integer multiples of the deviation, up to the reach.
 std::array<PanelNodes, kUnitPanels> nodes_of_unit_panels() {
   std::array<PanelNodes, kUnitPanels> panels;
   for (int i = 0; i < kUnitPanels; ++i) {
@@ -92,7 +92,7 @@ std::array<PanelNodes, kUnitPanels> nodes_of_unit_panels() {
 }  // namespace
 
 // With h = (upper − m)/s and l = (m − lower)/s, sat(ℓ) − m = s (Z − (Z − h)₊ + (−Z − l)₊). The two
-// excesses o, u never are positive together, so that with p, q the tails beyond h and l
+// excesses o, u are never both positive, so that with p, q the tails beyond h and l
 //     E sat = m + s (E u − E o),  slope = E[(Z − o + u) Z] = 1 − p − q,
 // and the residual is r = (p + q) Z − o + u − E(u − o), whose variance
 //     Var(u − o) − (p + q)²
@@ -140,7 +140,7 @@ std::array<double, kHigherOrders.size()> saturation_residual_norms(const Saturat
   };
   static const std::array<PanelNodes, kUnitPanels> unit_panels = nodes_of_unit_panels();
   for (int i = 0; i < kUnitPanels; ++i) {
-    // The integrand is smooth where the clamp does not bend.
+    // The integrand is smooth between the kinks of the clamp.
     const double from = i - kQuadratureReach;
     const double to = from + 1.0;
     const double first = std::clamp(low, from, to);
@@ -163,7 +163,7 @@ std::array<double, kHigherOrders.size()> saturation_residual_norms(const Saturat
 
 double largest_saturation_residual(const SaturationFit& fit, double mean, double reach,
                                    double lower, double upper) {
-  // Piecewise linear: extreme at the ends or where the clamp bends.
+  // Piecewise linear: its extremes are at the ends or at the kinks of the clamp.
   double largest = 0.0;
   for (const double wanted : {-reach, reach, lower - mean, upper - mean}) {
     const double s = std::clamp(wanted, -reach, reach);

@@ -11,7 +11,7 @@ namespace qsmpc::controller {
 struct SaturationFit {
   double mean = 0.0;      ///< E sat(ℓ), within the bounds
   double slope = 0.0;     ///< P(lower < ℓ < upper), by Gaussian integration by parts
-  double residual = 0.0;  ///< √E q², at least: allowances for cancellation are added
+  double residual = 0.0;  ///< bounds √E q² from above, with allowances for cancellation
 };
 
 /// The fit of the clamp to [lower, upper] (lower < upper, finite) under N(mean, deviation²).
@@ -19,9 +19,10 @@ struct SaturationFit {
 [[nodiscard]] SaturationFit fit_saturation(double mean, double deviation, double lower,
                                            double upper);
 
-/// At least ‖q‖_p = (E|q|^p)^{1/p}, p of kHigherOrders, of the fit's residual q under
-/// N(mean, deviation²), with the same bounds; by quadrature of a piecewise polynomial times the
-/// normal density, with allowances for its error. Infinite where mean or deviation is not finite.
+/// Upper bounds of ‖q‖_p = (E|q|^p)^{1/p}, p in kHigherOrders, for the fit's residual q under
+/// N(mean, deviation²), with the same bounds of the clamp; by quadrature of a piecewise polynomial
+/// times the normal density, with allowances for its error. Infinite where mean or deviation is not
+/// finite.
 [[nodiscard]] std::array<double, kHigherOrders.size()> saturation_residual_norms(
     const SaturationFit& fit, double mean, double deviation, double lower, double upper);
 

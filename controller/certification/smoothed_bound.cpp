@@ -39,11 +39,12 @@ class SoftMixture {
     }
   }
 
-  /// At least the value; a part of it, at least `enough`, once it is that much. 0 < t.
+  /// An upper bound of the value, or a partial sum of it as soon as that is at least `enough`.
+  /// 0 < t.
   [[nodiscard]] double value(double t, double enough = kInfinity) const {
     const Eigen::Index size = mixture_.centres.cols();
     double sum = 0.0;
-    // Where a part may be enough, the first centres may be.
+    // If a partial sum may be enough, that of the first few centres may be.
     Eigen::Index block = std::isinf(enough) ? kSoftBlock : kFirstBlock;
     for (Eigen::Index begin = 0; begin < size && sum < enough; begin += block) {
       if (begin > 0) block = kSoftBlock;
@@ -62,7 +63,8 @@ class SoftMixture {
  private:
   static constexpr Eigen::Index kFirstBlock = 8;
 
-  /// A disc of the body with its centre about those of the mixture; regions refer to the rest.
+  /// A disc of the body, moved to each of the mixture's centres; `regions` refer to the other
+  /// members.
   struct Disc {
     Points moved;
     Eigen::VectorXd lowest;
@@ -74,9 +76,9 @@ class SoftMixture {
   std::vector<Disc> discs_;
 };
 
-/// Bounds √E|e|² of what separates each disc's centre from the one that turns with the mixture's
-/// centres alone: the error of the state, and what noise of the heading does to the disc,
-/// o √E|e^{iw} − 1|² (docs/theory/certificates.md, section 5).
+/// Bounds √E|e|² for the difference e between each disc's centre and the one turned by the
+/// mixture's centres only: the error of the state, and the effect of the heading's noise on the
+/// disc, o √E|e^{iw} − 1|² (docs/theory/certificates.md, section 5).
 double radius_of_discs(const GaussianMixture& mixture, const UnsafeSet& unsafe, double radius) {
   if (unsafe.reach() == 0.0) return radius;
   const int heading = unsafe.body().heading;
@@ -85,7 +87,7 @@ double radius_of_discs(const GaussianMixture& mixture, const UnsafeSet& unsafe, 
          unsafe.reach() * std::sqrt(-2.0 * std::expm1(-0.5 * variance));
 }
 
-/// The same one by one, with allowances that serve the smallest t as well.
+/// The value summed centre by centre, with allowances that also hold for the smallest t.
 double precise_value(const GaussianMixture& mixture, const UnsafeSet& unsafe, double t,
                      Eigen::Index stage) {
   double sum = 0.0;

@@ -14,14 +14,14 @@
 
 namespace qsmpc::controller {
 
-/// At least E(1 − d(y, U)²/t²)₊ for y ~ N(mean, covariance) and U the unsafe set at `stage`, where
-/// discs of the body that are off its position are turned as `mean` is, not as y. t > 0.
+/// Upper bound of E(1 − d(y, U)²/t²)₊ for y ~ N(mean, covariance) and U the unsafe set at `stage`;
+/// discs of the body away from its position are turned by the heading of `mean`, not of y. t > 0.
 [[nodiscard]] double soft_unsafe_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
                                              const Eigen::Ref<const Eigen::MatrixXd>& covariance,
                                              const UnsafeSet& unsafe, double t,
                                              Eigen::Index stage = 0);
 
-/// Σ weights_i N(centre_i, covariance); refers to what must outlive it.
+/// Σ weights_i N(centre_i, covariance); refers to objects that must outlive it.
 struct GaussianMixture {
   const Points& centres;           ///< state_dim x n
   const Eigen::VectorXd& weights;  ///< n
@@ -29,8 +29,8 @@ struct GaussianMixture {
 };
 
 /// An upper bound of P(y + e ∈ U) for y ~ mixture and any e with E|e|² ≤ state_radius²: the least
-/// over a search in t, each of whose values is a bound. 1 as soon as no value below `useful_below`
-/// is possible.
+/// value found in a search over t, each of which is a bound. 1 if no value below `useful_below` is
+/// possible.
 [[nodiscard]] double smoothed_probability(const GaussianMixture& mixture, const UnsafeSet& unsafe,
                                           double state_radius, double useful_below = 1.0,
                                           Eigen::Index stage = 0);

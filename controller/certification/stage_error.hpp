@@ -1,4 +1,4 @@
-// Bounds of an error of the state at a stage: what affine surrogates carry from stage to stage.
+// Bounds on an error of the state at a stage, as affine surrogates propagate them.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,14 @@
 
 namespace qsmpc::controller {
 
-/// What is known of an error e, coordinate by coordinate: a row each, and a column for each way of
-/// measuring it.
+/// Bounds on an error e: a row for each coordinate, and a column for each norm.
 struct StageError {
   static constexpr Eigen::Index kColumns = 2 + static_cast<Eigen::Index>(kHigherOrders.size());
   using Bounds = Eigen::Matrix<double, Eigen::Dynamic, kColumns>;
 
-  Bounds bounds;  ///< n x kColumns, by the names below
+  Bounds bounds;  ///< n x kColumns; columns as named below
 
-  /// No error, of n coordinates.
+  /// The zero error in n coordinates.
   [[nodiscard]] static StageError none(Eigen::Index n) {
     return {.bounds = Bounds::Zero(n, kColumns)};
   }
@@ -30,7 +29,7 @@ struct StageError {
   [[nodiscard]] auto higher(std::size_t k) const {
     return bounds.col(1 + static_cast<Eigen::Index>(k));
   }
-  /// n, bounds |e_i| in the event of the next stage
+  /// n, bounds |e_i| on the event that the next stage is inside
   [[nodiscard]] auto largest() { return bounds.col(kColumns - 1); }
   [[nodiscard]] auto largest() const { return bounds.col(kColumns - 1); }
 };

@@ -17,8 +17,8 @@ struct Neighbourhood {
   Eigen::VectorXd reach;  ///< bounds |z_a − centre_a|; infinite in affine coordinates
 };
 
-/// Second moments of ξ = (x − m, u − E u) under the law, an input's before its clamp: shift and
-/// covariance of the Gaussian that dominates each.
+/// Second moments of ξ = (x − m, u − E u) under the law, inputs before their clamp: shift and
+/// covariance of the Gaussian that dominates each coordinate.
 struct Moments {
   Eigen::VectorXd shift;
   Eigen::MatrixXd covariance;
@@ -32,7 +32,7 @@ struct Moments {
     return std::sqrt(std::max(0.0, square));
   }
 
-  /// At least ‖X_a‖_2p, p of index k.
+  /// Upper bound of ‖X_a‖_2p, p = kHigherOrders[k].
   [[nodiscard]] double norm(Eigen::Index a, std::size_t k) const {
     const double deviation = std::sqrt(std::max(0.0, covariance(a, a)));
     return std::abs(shift[a]) + deviation * higher_order_norms(k).first_twice;
@@ -92,10 +92,10 @@ Moments moments_of(const Gaussian& law, const Eigen::MatrixXd& gain,
   return moments;
 }
 
-/// What the second derivatives of one component leave beside the affine map.
+/// The remainder of one component beyond the affine map, from its second derivatives.
 struct Curvature {
   double offset = 0.0;    ///< of the map
-  double residual = 0.0;  ///< bounds the mean square's root
+  double residual = 0.0;  ///< bounds the root mean square
   double largest = 0.0;   ///< bounds the absolute value over the neighbourhood
   std::array<double, kHigherOrders.size()> higher{};  ///< bounds the norms of higher order
 };
@@ -136,13 +136,13 @@ Curvature curvature_of(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& uppe
   return better;
 }
 
-/// Largest difference of an entry between `bounds` and `value`.
+/// Entrywise, the largest difference from `value` of a matrix within the bounds.
 Eigen::MatrixXd deviation(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& upper,
                           const Eigen::MatrixXd& value) {
   return (upper - value).cwiseMax(value - lower).cwiseMax(0.0);
 }
 
-/// Largest size of every entry of ∂f/∂x + ∂f/∂u diag(s) K over the bounds and all slopes
+/// Largest absolute value of every entry of ∂f/∂x + ∂f/∂u diag(s) K over the bounds and all slopes
 /// 0 ≤ s ≤ 1 of the clamp.
 Eigen::MatrixXd closed_loop_growth(const models::DerivativeBounds& bounds,
                                    const Eigen::MatrixXd& gain) {
@@ -158,7 +158,8 @@ Eigen::MatrixXd closed_loop_growth(const models::DerivativeBounds& bounds,
   return lower.cwiseAbs().cwiseMax(upper.cwiseAbs());
 }
 
-/// The step of any system, by its derivatives' bounds over the neighbourhood (Taylor's formula).
+/// Fits the step of any system by the bounds of its derivatives over the neighbourhood (Taylor's
+/// formula).
 void fit_by_derivatives(const PredictedMotion& motion, const Gaussian& law,
                         const Eigen::MatrixXd& gain, const std::vector<InputLinearisation>& inputs,
                         const Neighbourhood& near, StatisticalLinearisation& fit) {
@@ -215,7 +216,7 @@ double outside_core(const Gaussian& law, const std::vector<InputLinearisation>& 
 
 /// |q(x) − q(z)| is (1 − slope)|K(x − z)| where neither is clamped, and never more than
 /// max(slope, 1 − slope)|K(x − z)|; either is clamped only where z's feedback is within `largest`
-/// of a bound. norm: of K(x − z), of order `order`, as the result.
+/// of a bound. norm: that of K(x − z), of order `order`, like the result.
 double clamp_difference(const InputLinearisation& input, double norm, double largest,
                         double clamped, int order) {
   const double slope = input.saturation.slope;
@@ -225,7 +226,7 @@ double clamp_difference(const InputLinearisation& input, double norm, double lar
   return std::min(anywhere, (1.0 - slope) * norm + near_bound);
 }
 
-/// P(v + K(z − x̄) beyond a bound less `margin`).
+/// P(v + K(z − x̄) is within `margin` of a bound or beyond it).
 double probability_near_bounds(const InputLinearisation& input, double margin, double lower,
                                double upper) {
   if (!(input.deviation > 0.0)) return 1.0;

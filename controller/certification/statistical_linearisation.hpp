@@ -1,5 +1,5 @@
-// One step of the closed loop near a Gaussian: the affine map that stands for it, and how far the
-// step can be from this map. Derivation: docs/theory/surrogate.md.
+// One step of the closed loop near a Gaussian: its affine approximation, and bounds on the
+// difference. Derivation: docs/theory/surrogate.md.
 #pragma once
 
 #include <array>
@@ -21,14 +21,14 @@ namespace qsmpc::controller {
 struct StatisticalLinearisation {
   Eigen::MatrixXd transition;  ///< A, n x n
   Eigen::VectorXd next_mean;   ///< n
-  /// Bounds of r(z), z in the core, the mean square without `closed_form`; and of |r(x)| over the
+  /// Bounds on r(z), z in the core, the mean square without `closed_form`; and on |r(x)| over the
   /// region.
   StageError residual;
   Eigen::VectorXd closed_form;  ///< n, √E[…²] of the unicycle's part of r(z); else zero
   Eigen::MatrixXd growth;  ///< n x n: |g_i(x) − g_i(z)| ≤ Σ_a growth_ia |x_a − z_a|, g the step
   Eigen::MatrixXd stretch;  ///< n x n: |r_i(x) − r_i(z)| ≤ Σ_a stretch_ia |x_a − z_a| + …
   Eigen::MatrixXd input_gain;  ///< n x m: … + Σ_b input_gain_ib |q_b(x) − q_b(z)|
-  Box region;                  ///< core, widened by what x can be from z; infinite if affine there
+  Box region;                  ///< the core widened by |x − z|; infinite in affine coordinates
   double outside = 0.0;        ///< bounds P(z not in the core)
 };
 
@@ -42,19 +42,18 @@ struct InputLinearisation {
   std::array<double, kHigherOrders.size()> higher_difference{};  ///< ‖q(x) − q(z)‖_p inside
 };
 
-/// The inputs' fits at stage `stage` about `law`; `error` is x − z before the step.
+/// The inputs' fits at stage `stage` about `law`; `error` bounds x − z before the step.
 [[nodiscard]] std::vector<InputLinearisation> linearise_inputs(const PredictedMotion& motion,
                                                                Eigen::Index stage,
                                                                const Gaussian& law,
                                                                const StageError& error);
 
-/// Which coordinates of (x, u) f depends on in an affine way with constant coefficients,
-/// everywhere.
+/// For each coordinate of (x, u), whether f is affine in it with constant coefficients everywhere.
 [[nodiscard]] std::vector<bool> affine_coordinates(const models::Dynamics& dynamics);
 
-/// How far a core reaches: in which coordinates of (x, u), as `affine_coordinates` says, and how
-/// many standard deviations. A wide one is hardly ever left (4e-8 in each coordinate); a narrow one
-/// (5e-4) has smaller residuals where deviations are large.
+/// The shape of a core: the affine coordinates of (x, u), from `affine_coordinates`, which it does
+/// not restrict, and its half-width in standard deviations. A wide core is hardly ever left (4e-8
+/// in each coordinate); a narrow one (5e-4) has smaller residuals where deviations are large.
 struct CoreShape {
   std::vector<bool> affine;
   double reach;

@@ -9,11 +9,11 @@
 namespace qsmpc::controller {
 namespace {
 
-// What a region may add without being worked out further …
+// A region's contribution below which its bound is not refined further …
 constexpr double kNegligibleBound = 1e-8;
-// … and without a search that takes long.
+// … and below which no long search is made.
 constexpr double kWorthwhile = 1e-4;
-// From where on another core, which alone costs some 1e-2, may help.
+// The bound from which the narrow core, which itself costs about 1e-2, may help.
 constexpr double kTryNarrow = 0.03;
 
 Eigen::Index region_count(const UnsafeSet& unsafe) {
@@ -22,8 +22,8 @@ Eigen::Index region_count(const UnsafeSet& unsafe) {
   return static_cast<Eigen::Index>(count);
 }
 
-/// C3 and C4 of one stage, and what each region adds to C4. C4 takes the better of the two for
-/// every part of the unsafe set.
+/// C3 and C4 of one stage, and each region's contribution to C4, which takes the better of the two
+/// for every part of the unsafe set.
 RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const UnsafeSet& unsafe,
                                       CertificateEffort effort, Eigen::Index stage,
                                       const SurrogateStage& surrogate, const PathTilt& tilt,

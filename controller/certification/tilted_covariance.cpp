@@ -32,7 +32,7 @@ void TiltedCovariance::tilt_law(Eigen::Index block, Gaussian& law) const {
   law.mean += tilt_.functionals.moves[static_cast<std::size_t>(block)] * tilt_.centre;
   law.covariance = covariance_ - with_ * shares_.asDiagonal() * with_.transpose();
   law.covariance = 0.5 * (law.covariance + law.covariance.transpose()).eval();
-  // Rounding can leave a variance that is all the functionals' a hair below zero.
+  // A variance entirely explained by the functionals can be slightly negative by rounding.
   law.covariance.diagonal() = law.covariance.diagonal().cwiseMax(0.0);
 }
 

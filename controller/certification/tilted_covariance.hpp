@@ -8,27 +8,27 @@
 
 namespace qsmpc::controller {
 
-/// S_k = Cov z_k without the tilt and s_k = Cov(z_k, a): with it the covariance is
-/// S − s diag(1 − w²) sᵀ, and the noise of block j has the mean Γ_j c. Without a tilt it is S, and
-/// nothing else is done.
+/// With S_k = Cov z_k and s_k = Cov(z_k, a) under the untilted law, the tilted covariance is
+/// S − s diag(1 − w²) sᵀ, and the noise of block j has the mean Γ_j c. Without a tilt the
+/// covariance is S, and nothing else is done.
 class TiltedCovariance {
  public:
   /// Refers to the tilt.
   explicit TiltedCovariance(const PathTilt& tilt);
 
-  /// law: of the belief; becomes that with the tilt.
+  /// law: that of the belief; replaced by its tilted law.
   void start(Gaussian& law);
-  /// law: its mean is that of A z + b; becomes the law of A z + b + w_stage.
+  /// law: on entry, its mean is that of A z + b; replaced by the law of A z + b + w_stage.
   void step(Eigen::Index stage, const Eigen::MatrixXd& transition,
             const Eigen::MatrixXd& noise_covariance, Gaussian& law);
 
   [[nodiscard]] bool is_tilted() const { return !tilt_.empty(); }
-  /// Covariance, with the tilt, of z with z of the stage before; empty before the first step.
+  /// Tilted covariance of z with z of the previous stage; empty before the first step.
   [[nodiscard]] const Eigen::MatrixXd& with_last() const { return with_last_; }
   /// S
   [[nodiscard]] const Eigen::MatrixXd& covariance() const { return covariance_; }
-  /// Row `axis` of s diag(1 − w²)^½: the products of two of these are what the tilt takes off
-  /// covariances.
+  /// Row `axis` of s diag(1 − w²)^½: the tilt reduces a covariance by the inner product of two such
+  /// rows.
   [[nodiscard]] Eigen::VectorXd with_functionals(Eigen::Index axis) const {
     return with_.row(axis).transpose().cwiseProduct(shares_.cwiseSqrt());
   }

@@ -12,7 +12,7 @@ namespace {
 /// max |sin δ| over |δ| ≤ reach.
 double largest_sine(double reach) { return reach < 0.5 * std::numbers::pi ? std::sin(reach) : 1.0; }
 
-/// The map, and what of its residual is known exactly.
+/// The affine map, and the part of its residual that is known exactly.
 void fit_map(const models::UnicycleStructure& unicycle, const Gaussian& law,
              const UnicycleFeedback& feedback, Eigen::Index inputs, StatisticalLinearisation& fit) {
   const Eigen::Index states = law.mean.size();
@@ -35,7 +35,7 @@ void fit_map(const models::UnicycleStructure& unicycle, const Gaussian& law,
   fit.closed_form[unicycle.y] = unicycle.reach * std::sqrt(moments(1, 1));
 }
 
-/// What is known of the residual and of the step's slopes over the region.
+/// Bounds on the residual and on the step's slopes over the region.
 void bound_residual(const models::UnicycleStructure& unicycle, const Gaussian& law,
                     const UnicycleFeedback& feedback, StatisticalLinearisation& fit) {
   const Eigen::Index states = law.mean.size();
@@ -45,7 +45,7 @@ void bound_residual(const models::UnicycleStructure& unicycle, const Gaussian& l
   const double lost = -std::expm1(-0.5 * variance);
   const double along_x = std::abs(std::cos(law.mean[heading]));
   const double along_y = std::abs(std::sin(law.mean[heading]));
-  // A car at rest does not depend on its heading, of which nothing is bounded then.
+  // With zero reach the step does not depend on the heading, which is then unbounded.
   const double away = unicycle.reach == 0.0 ? 0.0 : feedback.away;
   for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
     const HeadingNorms norms = heading_norms(variance, k);
@@ -54,8 +54,8 @@ void bound_residual(const models::UnicycleStructure& unicycle, const Gaussian& l
     fit.residual.higher(k)[unicycle.y] =
         unicycle.reach * (norms.along * along_y + norms.across * along_x);
   }
-  // |e^{iδ} − 1 − iδ| ≤ δ²/2, and the fit takes the share `lost` off 1 + iδ; far off, both are as
-  // large as they can be.
+  // |e^{iδ} − 1 − iδ| ≤ δ²/2, and the fit reduces 1 + iδ by the share `lost`; far from the mean,
+  // the sum of both absolute values is the better bound.
   const double fitted = std::sqrt(1.0 + away * away);
   const double position =
       unicycle.reach * std::min(0.5 * away * away + lost * fitted, 1.0 + shrink * fitted);

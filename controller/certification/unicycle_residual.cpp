@@ -9,7 +9,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// Below this exponent five terms of the series are exact to rounding, and e^c − 1 − c is not.
+// Below this exponent five terms of the series are exact to rounding, whereas e^c − 1 − c cancels.
 constexpr double kSmallExponent = 1e-3;
 
 /// e^{−s}(e^{c} − 1 − c), also where e^c alone would overflow and where both parts nearly cancel.

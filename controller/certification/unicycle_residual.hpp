@@ -1,4 +1,5 @@
-// What the best affine fits of e^{iφ} leave of a unicycle's position, exactly in mean square.
+// The residual of a unicycle's position under the best affine fits of e^{iφ}, exactly in mean
+// square.
 //
 // Under a Gaussian heading φ ~ N(m, v) the best affine fit of e^{iφ} is e^{im − v/2}(1 + i(φ − m)).
 // The headings of the surrogate are jointly Gaussian, so the residuals' second moments have a
@@ -21,8 +22,8 @@ namespace qsmpc::controller {
 [[nodiscard]] Eigen::Matrix2d residual_moments(double mean_i, double variance_i, double mean_j,
                                                double variance_j, double covariance);
 
-/// Bounds of ‖cos δ − e^{−v/2}‖_p and ‖sin δ − e^{−v/2}δ‖_p for δ ~ N(0, v): what the best affine
-/// fit leaves along and across the mean heading.
+/// Bounds of ‖cos δ − e^{−v/2}‖_p and ‖sin δ − e^{−v/2}δ‖_p for δ ~ N(0, v): the residual of the
+/// best affine fit along and across the mean heading.
 struct HeadingNorms {
   double along;
   double across;
@@ -31,7 +32,7 @@ struct HeadingNorms {
 /// p = kHigherOrders[k].
 [[nodiscard]] HeadingNorms heading_norms(double variance, std::size_t k);
 
-/// The position residuals of all stages so far, carried along: κ_{k+1} = A_k κ_k + reach ρ_k.
+/// The position residuals of all stages so far, propagated: κ_{k+1} = A_k κ_k + reach ρ_k.
 class UnicycleResidual {
  public:
   /// For states of `dim` coordinates and at most `stages` stages.
@@ -40,11 +41,11 @@ class UnicycleResidual {
 
   /// Adds the residual of a stage with the surrogate's law `law` and its affine map's `transition`.
   /// Takes O(stages) time.
-  /// tilted: where given, the covariance of which `law` has what a tilt of the path leaves.
+  /// tilted: if given, the recursion of the tilted covariance, which is that of `law`.
   void add_stage(const Gaussian& law, const Eigen::MatrixXd& transition,
                  const TiltedCovariance* tilted = nullptr);
 
-  /// √E κ_i² of the last stage added, coordinate by coordinate.
+  /// √E κ_i² after the last stage added, coordinate by coordinate.
   [[nodiscard]] Eigen::VectorXd root_mean_squares() const;
 
  private:
@@ -52,10 +53,10 @@ class UnicycleResidual {
   std::vector<double> means_;           ///< of the heading at every stage
   std::vector<double> variances_;       ///< of the same
   std::vector<Eigen::VectorXd> tilts_;  ///< Cov(heading, functionals of the tilt) at every stage
-  /// Three columns a stage: Cov(state now, heading then) without the tilt, and the residual of
-  /// then, as it is now.
+  /// Three columns per stage: the untilted Cov(current state, heading at that stage), and the map
+  /// of that stage's residual to the current state.
   Eigen::MatrixXd past_;
-  Eigen::MatrixXd shifted_;        ///< of the same size, for the step from stage to stage
+  Eigen::MatrixXd shifted_;        ///< of the same size; scratch of a step
   Eigen::MatrixXd second_moment_;  ///< E[κ κᵀ]
 };
 

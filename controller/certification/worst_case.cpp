@@ -10,7 +10,7 @@
 namespace qsmpc::controller {
 double transported_mass(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,
                         const Eigen::Ref<const Eigen::VectorXd>& weights, double budget) {
-  // Where there is enough for all that can be moved, the order does not matter.
+  // If the budget suffices for all movable mass, the order does not matter.
   double all_costs = 0.0;
   double all_mass = 0.0;
   for (Eigen::Index i = 0; i < unit_costs.size(); ++i) {
@@ -19,11 +19,11 @@ double transported_mass(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,
     all_mass += weights[i];
   }
   if (all_costs <= budget) return std::min(1.0, all_mass);
-  // Only the nearest are put in order, as far as the budget goes.
+  // A heap sorts only the nearest points, as far as the budget reaches.
   std::vector<std::pair<double, double>> heap;  // unit cost and mass
   heap.reserve(unit_costs.size());
   for (Eigen::Index i = 0; i < unit_costs.size(); ++i) {
-    // Mass infinitely far away cannot be moved at all, not even none of it at cost 0 · ∞.
+    // Mass infinitely far away cannot be moved; weights of zero must not cost 0 · ∞ either.
     if (!std::isinf(unit_costs[i])) heap.emplace_back(unit_costs[i], weights[i]);
   }
   std::make_heap(heap.begin(), heap.end(), std::greater<>());

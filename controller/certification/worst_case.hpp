@@ -10,8 +10,8 @@
 namespace qsmpc::controller {
 
 /// sup { Q(unsafe) : W2(Q, P) ≤ radius } for P = Σ weights_i δ with the given distances to the
-/// unsafe set (≥ 0; as many as weights). Exact: moving mass m over a distance d costs m d², and
-/// what is nearest is moved first, until radius² is spent (docs/theory/certificates.md, section 2).
+/// unsafe set (≥ 0; as many as weights). Exact: moving mass m over a distance d costs m d², and the
+/// nearest mass is moved first, until radius² is spent (docs/theory/certificates.md, section 2).
 /// Throws std::invalid_argument if sizes differ, a weight or distance is negative or NaN, or
 /// radius < 0 or NaN; an infinite radius gives 1.
 [[nodiscard]] double worst_case_probability(const Eigen::Ref<const Eigen::VectorXd>& distances,
@@ -22,8 +22,8 @@ namespace qsmpc::controller {
 [[nodiscard]] double worst_case_probability(const DiscreteMeasure& measure, const UnsafeSet& unsafe,
                                             double radius);
 
-/// The mass that can be moved at these unit costs (≥ 0) for `budget`, the cheapest first, at
-/// most 1. What costs infinity cannot be moved.
+/// The mass, at most 1, that can be moved at these unit costs (≥ 0) within `budget`, the cheapest
+/// first. Mass of infinite unit cost cannot be moved.
 [[nodiscard]] double transported_mass(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,
                                       const Eigen::Ref<const Eigen::VectorXd>& weights,
                                       double budget);

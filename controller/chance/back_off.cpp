@@ -19,7 +19,7 @@ BackOffConstraint::BackOffConstraint(const ChanceProblem& problem, double factor
   deviations_ = Eigen::MatrixXd::Zero(per_stage(), problem.horizon);
 }
 
-/// Distances and slopes at where the noise-free path is.
+/// Distances and their slopes at the noise-free path.
 void BackOffConstraint::look(Eigen::Index stage, const SampledPaths& paths) {
   const Points& states = paths.states(stage);
   state_ = states.rightCols<1>();
@@ -59,7 +59,7 @@ void BackOffConstraint::hold(const HeldLaws& laws, const SampledPaths& paths) {
 void BackOffConstraint::values(Eigen::Index stage, const SampledPaths& paths,
                                Eigen::Ref<Eigen::VectorXd> values) {
   look(stage, paths);
-  // Nothing unsafe in a region without bounds: infinitely far away, and finite for a sum.
+  // A region without bounds is infinitely far away: capped, so that sums stay finite.
   values = factor_ * deviations_.col(stage - 1) - distances_[stage - 1].cwiseMin(1e9);
 }
 

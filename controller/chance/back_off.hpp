@@ -1,10 +1,11 @@
-// Constraints on a Gaussian law: the noise-free path keeps as many standard deviations away from
-// each region as a factor says.
+// Constraints on a Gaussian law: the noise-free path keeps a distance of `factor` standard
+// deviations from each region.
 //
-// The obstacle is linearised: its surface is taken for the plane that is nearest to the path, along
-// whose normal n the deviation is √(nᵀ Σ n). Both are held while inputs are searched for, so that
-// the gradient is that of the path alone (the zero-order update of Zanelli, Frey, Messerer, Diehl:
-// "Zero-order robust nonlinear model predictive control with ellipsoidal uncertainty sets", 2021).
+// The obstacle is linearised: its surface is replaced by the plane nearest to the path, along whose
+// normal n the standard deviation is √(nᵀ Σ n). The deviations are held while the inputs are
+// optimised, so that the gradient is only that of the distance (the zero-order update of Zanelli,
+// Frey, Messerer, Diehl: "Zero-order robust nonlinear model predictive control with ellipsoidal
+// uncertainty sets", 2021).
 #pragma once
 
 #include <memory>
@@ -18,8 +19,8 @@ namespace qsmpc::controller {
 
 class BackOffConstraint final : public ChanceConstraint {
  public:
-  /// factor: standard deviations that are kept. beyond: the probability of being beyond a plane
-  /// that is so many standard deviations away.
+  /// factor: number of standard deviations to keep. beyond: the probability of being beyond a
+  /// plane, as a function of its distance in standard deviations.
   BackOffConstraint(const ChanceProblem& problem, double factor, double (*beyond)(double));
 
   [[nodiscard]] Eigen::Index per_stage() const override {
@@ -33,7 +34,7 @@ class BackOffConstraint final : public ChanceConstraint {
   [[nodiscard]] double believed(Eigen::Index stage, const SampledPaths& paths) const override;
 
  private:
-  /// One region as one disc meets it.
+  /// A region paired with a disc.
   struct Meeting {
     const DiscView* disc;
     const UnsafeRegion* region;
@@ -45,7 +46,7 @@ class BackOffConstraint final : public ChanceConstraint {
   double (*beyond_)(double);
   std::vector<Meeting> regions_;
   Eigen::MatrixXd deviations_;  // of the distances; regions x horizon
-  // At the stage looked at last, where it was then: by region.
+  // At each stage, as of the last `look`, by region.
   std::vector<Eigen::VectorXd> distances_;  // by stage: regions
   std::vector<Eigen::MatrixXd> slopes_;     // by stage: state_dim x regions
   Points state_;                            // scratch: state_dim x 1

@@ -1,6 +1,6 @@
-// The same for every law with the mean and the covariance: by Cantelli's inequality
-// P(n·x ≤ b) ≤ σ²/(σ² + d²), which is δ at d = √((1 − δ)/δ) σ, and which a law on two points
-// attains (Calafiore, El Ghaoui: "On distributionally robust chance-constrained linear programs",
+// The chance constraint of every law with the given mean and covariance, by Cantelli's inequality
+// P(n·x ≤ b) ≤ σ²/(σ² + d²), which equals δ at d = √((1 − δ)/δ) σ and is attained by a two-point
+// law (Calafiore, El Ghaoui: "On distributionally robust chance-constrained linear programs",
 // 2006).
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-// Chance constraints of the literature: that the body is clear of the unsafe set with a stated
-// probability, each in the way in which its method believes it. They say nothing of the true
-// probability; certificates do (certification/certificate.hpp).
+// Chance constraints from the literature: the body is clear of the unsafe set with a stated
+// probability, as each method approximates it. They say nothing about the true probability;
+// certificates do (certification/certificate.hpp).
 //
-// A new one is a file with a class, and a line in the table.
+// To add one, write a file with a class, and add a line to the table.
 #pragma once
 
 #include <memory>
@@ -20,9 +20,9 @@
 
 namespace qsmpc::controller {
 
-/// What is held while inputs are searched for.
+/// What is held fixed while the inputs are optimised.
 struct HeldLaws {
-  /// Of the states at stage 0 … horizon as the linearised model has them, state_dim x state_dim.
+  /// Of the states at stage 0 … horizon in the linearised model, state_dim x state_dim.
   const std::vector<Eigen::MatrixXd>& covariances;
 };
 
@@ -31,19 +31,19 @@ class ChanceConstraint {
  public:
   virtual ~ChanceConstraint() = default;
 
-  /// How many there are at a stage.
+  /// Number of constraints at a stage.
   [[nodiscard]] virtual Eigen::Index per_stage() const = 0;
-  /// For the constraints on Gaussian laws: what their margins are from now on, about where `paths`
-  /// are.
+  /// For constraints on Gaussian laws: fixes their margins, linearised about the present `paths`.
   virtual void hold(const HeldLaws& /*laws*/, const SampledPaths& /*paths*/) {}
   /// c at a stage; `values` comes with per_stage() entries.
   virtual void values(Eigen::Index stage, const SampledPaths& paths,
                       Eigen::Ref<Eigen::VectorXd> values) = 0;
-  /// Adds Σ_j multipliers_j ∂c_j/∂states to the adjoint of the stage. At the states of which
-  /// `values` has been asked last for the stage.
+  /// Adds Σ_j multipliers_j ∂c_j/∂states to the adjoint of the stage. Evaluated at the states of
+  /// the last call of `values` for the stage.
   virtual void add_adjoint(Eigen::Index stage, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                            SampledPaths& paths) = 0;
-  /// The probability of being unsafe at `stage` that the method believes in. As add_adjoint.
+  /// The method's own estimate of the probability of being unsafe at `stage`, at the states as for
+  /// add_adjoint.
   [[nodiscard]] virtual double believed(Eigen::Index stage, const SampledPaths& paths) const = 0;
 };
 
@@ -52,13 +52,13 @@ struct ChanceProblem {
   const UnsafeSet& unsafe;  ///< must outlive them
   const ChanceSettings& settings;
   Eigen::Index horizon = 1;
-  Eigen::Index paths = 0;  ///< that are sampled; 0 for constraints on Gaussian laws
+  Eigen::Index paths = 0;  ///< sampled paths; 0 for constraints on Gaussian laws
 };
 
 struct ChanceConstraintEntry {
   std::string name;
   std::string summary;
-  bool samples = false;  ///< whether it is said of sampled paths; else of Gaussian laws
+  bool samples = false;  ///< whether it is on sampled paths; else on Gaussian laws
   std::unique_ptr<ChanceConstraint> (*make)(const ChanceProblem& problem) = nullptr;
 };
 
@@ -68,7 +68,7 @@ struct ChanceConstraintEntry {
 /// Throws std::invalid_argument on an unknown name.
 [[nodiscard]] const ChanceConstraintEntry& chance_constraint_entry(std::string_view name);
 
-// The makers of the table.
+// The factories in the table.
 [[nodiscard]] std::unique_ptr<ChanceConstraint> make_cone_constraint(const ChanceProblem& problem);
 [[nodiscard]] std::unique_ptr<ChanceConstraint> make_cantelli_constraint(
     const ChanceProblem& problem);

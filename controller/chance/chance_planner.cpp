@@ -21,15 +21,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// What the augmented Lagrangian counts as 1, m.
+// Unit of the constraints in the augmented Lagrangian, m.
 constexpr double kUnit = 0.1;
-// How far from a constraint, in that unit, multipliers are content; as much more is asked for.
+// Tolerance of the constraints, in that unit; they are tightened by as much.
 constexpr double kTolerance = 5e-4;
-// Minimisations until the multipliers have settled, going on or from nothing.
+// Most minimisations until the multipliers have converged, for warm and cold starts.
 constexpr int kWarmRounds = 6;
 constexpr int kColdRounds = 20;
-// Minimisations need be no more precise than this, relatively: as those of the quantised planner
-// where it goes on from the last plan.
+// Relative tolerance of the minimisations, as for warm-started plans of the quantised planner.
 constexpr double kMinimisationTolerance = 1e-7;
 // A tube leaves the nominal input at least this share of its range.
 constexpr double kLeastInputShare = 0.05;
@@ -74,7 +73,7 @@ Eigen::Index paths_of(const ChancePlannerSettings& settings, const models::Dynam
 
 }  // namespace
 
-/// The chance constraint at all stages as functions of the decision, in kUnit.
+/// The chance constraint at all stages as a function of the decision, in kUnit.
 class ChancePlanner::Constraints final : public SummedConstraints {
  public:
   Constraints(ChanceConstraint& constraint, SampledPaths& paths)
@@ -93,7 +92,7 @@ class ChancePlanner::Constraints final : public SummedConstraints {
     return values_;
   }
 
-  /// What the paths' adjoints hold already is pulled back with it, in one pass.
+  /// Also pulls back what the paths' adjoints already hold, in one pass.
   void add_gradient(const Eigen::VectorXd& multipliers, Eigen::VectorXd& gradient) override {
     const Eigen::Index n = constraint_.per_stage();
     scaled_ = multipliers / kUnit;
@@ -158,7 +157,7 @@ void ChancePlanner::reset(std::uint64_t seed) {
   under_way_ = false;
 }
 
-/// New paths: what has been seen of the drive so far tells nothing of them.
+/// Draws new paths, independent of everything observed in the drive so far.
 void ChancePlanner::draw(const Gaussian& belief, Eigen::Index period) {
   if (path_count_ == 0) return;
   if (belief_covariance_.size() == 0 || belief_covariance_ != belief.covariance) {
@@ -193,7 +192,7 @@ void ChancePlanner::place_target(const Gaussian& belief) {
                                   weights_);
 }
 
-/// The inputs of a plan for the mean alone, with penalties, which finds the way round obstacles.
+/// Starts from the inputs of a noise-free plan with penalties, which finds a way round obstacles.
 bool ChancePlanner::first_guess(const Gaussian& belief, Clock::time_point deadline) {
   nominal_->reset();
   const Plan& plan = nominal_->plan(belief, {.deadline = deadline, .progress = progress_});
@@ -203,7 +202,7 @@ bool ChancePlanner::first_guess(const Gaussian& belief, Clock::time_point deadli
   return true;
 }
 
-/// Gains, covariances and back-offs that belong to the inputs in z_.
+/// Computes and holds the gains, covariances and back-offs for the inputs in z_.
 void ChancePlanner::hold(const Gaussian& belief) {
   const Eigen::Index horizon = settings_.problem.horizon;
   const bool feedback = settings_.problem.closed_loop && settings_.chance.memory == 0;
@@ -229,7 +228,7 @@ void ChancePlanner::hold(const Gaussian& belief) {
   constraint_->hold({.covariances = covariances_}, sampled_);
 }
 
-/// Moves the bounds of the nominal inputs in by what feedback needs, as far as there is room.
+/// Tightens the bounds of the nominal inputs by what feedback needs, as far as there is room.
 void ChancePlanner::tighten() {
   const InputBounds& bounds = settings_.problem.bounds;
   const Eigen::Index inputs = bounds.lower.size();
@@ -258,7 +257,7 @@ double ChancePlanner::violation_at(const Eigen::VectorXd& z) {
   return std::max(0.0, kUnit * (values.maxCoeff() - kTolerance));
 }
 
-/// Minimisations from z_, with multipliers that are made to settle; the result is in z_.
+/// Augmented-Lagrangian minimisations from z_ until the multipliers have converged; result in z_.
 void ChancePlanner::search(const Gaussian& belief, bool warm, Clock::time_point deadline) {
   if (!warm) solver_.forget();
   hold(belief);
@@ -312,7 +311,7 @@ const ChancePlan& ChancePlanner::plan(const Gaussian& belief, PathDraw draw,
   return make(belief, deadline);
 }
 
-/// A plan for the paths that are drawn.
+/// A plan for the drawn paths.
 const ChancePlan& ChancePlanner::make(const Gaussian& belief, Clock::time_point deadline) {
   if (std::isfinite(settings_.problem.deadline)) {
     const auto longest = std::chrono::duration_cast<Clock::duration>(
@@ -333,7 +332,7 @@ const ChancePlan& ChancePlanner::make(const Gaussian& belief, Clock::time_point 
   stopwatch.add_to(plan_.timing.propagate);
   search(belief, warm, deadline);
   if (warm && plan_.status == SolverStatus::kInfeasible) {
-    // Perhaps there is another way round.
+    // Another way round the obstacles may be feasible.
     best_ = z_;
     const double violation = plan_.violation;
     if (first_guess(belief, deadline)) search(belief, false, deadline);
@@ -347,7 +346,7 @@ const ChancePlan& ChancePlanner::make(const Gaussian& belief, Clock::time_point 
   return plan_;
 }
 
-/// The last decision, its curvature and its multipliers, a stage later.
+/// Shifts the last decision, its curvature and its multipliers by one stage.
 void ChancePlanner::move_on() {
   sampled_.shift(z_);
   if (settings_.chance.memory > 0) {
@@ -356,7 +355,7 @@ void ChancePlanner::move_on() {
     solver_.shift({.inputs_per_stage = dynamics_.input_dim(), .horizon = sampled_.horizon()});
   }
   if (path_count_ > 0 && constraint_->per_stage() == path_count_) {
-    lagrangian_.release();  // they were those of other paths
+    lagrangian_.release();  // they belong to other paths
   } else {
     lagrangian_.shift(constraint_->per_stage());
   }

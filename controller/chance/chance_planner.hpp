@@ -1,9 +1,9 @@
-// Plans that keep a chance constraint of the literature, in a receding horizon: the expected
-// quadratic cost is minimised over inputs by a quasi-Newton method with bounds, the constraint kept
-// by the augmented Lagrangian.
+// Receding-horizon plans under a chance constraint from the literature: a quasi-Newton method with
+// bounds minimises the expected quadratic cost over the inputs, and an augmented Lagrangian
+// enforces the constraint.
 //
-// Neither penalties nor certificates have a part in it: what a plan is believed to risk is the
-// method's own opinion.
+// Certificates play no part in it, and penalties only in the first guess: the risk that a plan
+// reports is the method's own estimate.
 #pragma once
 
 #include <chrono>
@@ -32,11 +32,11 @@
 namespace qsmpc::controller {
 
 struct ChancePlannerSettings {
-  PlannerSettings problem;  ///< of which penalties and limits of the risk are not used
+  PlannerSettings problem;  ///< penalties and risk limits are not used by the search
   ChanceSettings chance{};
   std::string constraint = "cone";  ///< a name of `chance_constraints`
-  /// Whether the input bounds are moved in by the deviations of the inputs that feedback makes, as
-  /// many as a cone asks for: a tube about the path.
+  /// Whether the bounds of the nominal inputs are tightened by the standard deviations of the
+  /// feedback inputs, times the factor of the cone: a tube about the path.
   bool tightened_inputs = false;
 };
 
@@ -46,16 +46,16 @@ struct ChancePlan {
   CostParts cost;
   SolverStatus status = SolverStatus::kConverged;
   int evaluations = 0;
-  double violation = 0.0;  ///< m, of the constraint that is violated most
+  double violation = 0.0;  ///< m, of the most violated constraint
   double believed =
-      0.0;  ///< probability of being unsafe after the first stage, as the method has it
+      0.0;  ///< probability of being unsafe after the first stage, as the method estimates it
   PlanTiming timing;
 };
 
 class ChancePlanner {
  public:
-  /// `dynamics` must outlive it. Throws std::invalid_argument on settings that make no sense, as
-  /// Planner, and where a memory is asked of a constraint that has no samples.
+  /// `dynamics` must outlive it. Throws std::invalid_argument on invalid settings, as Planner does,
+  /// and on a memory for a constraint without samples.
   ChancePlanner(const models::Dynamics& dynamics, const ChancePlannerSettings& settings);
   ~ChancePlanner();
   ChancePlanner(const ChancePlanner&) = delete;
@@ -63,13 +63,13 @@ class ChancePlanner {
   ChancePlanner(ChancePlanner&&) = delete;
   ChancePlanner& operator=(ChancePlanner&&) = delete;
 
-  /// A plan from `belief` in period `period` of a drive, going on from the last one. Time that is
-  /// up is a status: the best so far then. progress: as in PlanRequest.
+  /// A plan from `belief` in period `period` of a drive, warm-started from the last one. A missed
+  /// deadline is a status; the plan is then the best so far. progress: as in PlanRequest.
   const ChancePlan& plan(
       const Gaussian& belief, Eigen::Index period,
       std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max(),
       std::optional<double> progress = {});
-  /// The same for these paths instead of such as are drawn. Throws std::invalid_argument unless
+  /// The same for given paths instead of randomly drawn ones. Throws std::invalid_argument unless
   /// there are paths() of them, over the horizon.
   const ChancePlan& plan(const Gaussian& belief, PathDraw draw,
                          std::chrono::steady_clock::time_point deadline =
@@ -77,7 +77,7 @@ class ChancePlanner {
   /// The next plan is the first of another drive, whose paths are drawn from this seed.
   void reset(std::uint64_t seed);
 
-  /// How many paths are sampled for a plan; 0 where the constraint is on Gaussian laws.
+  /// Number of paths sampled per plan; 0 where the constraint is on Gaussian laws.
   [[nodiscard]] Eigen::Index paths() const { return path_count_; }
 
  private:
@@ -105,12 +105,12 @@ class ChancePlanner {
   std::optional<Planner> nominal_;  // of first guesses
   std::optional<Guide> guide_;
   PolicyMaker policies_;
-  QuadraticCost weights_;  // about the target that is nearest to the belief, or the guide's aim
+  QuadraticCost weights_;  // about the target nearest to the belief, or the guide's aim
   AugmentedLagrangian lagrangian_;
   ProjectedBfgsSolver solver_;
   OcpProblem problem_;
   Eigen::MatrixXd noise_root_;
-  Eigen::MatrixXd belief_covariance_;  // that belief_root_ belongs to
+  Eigen::MatrixXd belief_covariance_;  // whose root is belief_root_
   Eigen::MatrixXd belief_root_;
   Eigen::MatrixXd normals_;  // scratch: state_dim x paths
   Eigen::MatrixXd inputs_;   // scratch: input_dim x horizon
@@ -126,7 +126,7 @@ class ChancePlanner {
   Policy held_;  // whose gains are held
   std::uint64_t seed_ = 0;
   bool under_way_ = false;
-  std::optional<double> progress_;  // of the plan at hand
+  std::optional<double> progress_;  // of the current plan
   ChancePlan plan_;
 };
 

@@ -1,7 +1,7 @@
 // The chance constraint of a Gaussian law and a half-space: Φ((d − 0)/σ) ≥ 1 − δ, which is a cone
 // in mean and deviation, d ≥ Φ⁻¹(1 − δ) σ (Blackmore, Ono, Williams: "Chance-constrained optimal
 // path planning with obstacles", 2011). Exact for linear systems with Gaussian noise and one
-// half-space; for several each is asked for by itself.
+// half-space; several half-spaces are constrained one by one.
 #include <cmath>
 
 #include <boost/math/distributions/normal.hpp>

@@ -1,7 +1,6 @@
-// The conditional value at risk of what is lacking of the clearance: the mean of its worst share δ
-// must not be above 0, which bounds the probability of being unsafe by δ for the sampled law
-// (Rockafellar, Uryasev: "Optimization of conditional value-at-risk", 2000), here at every stage by
-// itself.
+// The conditional value at risk of minus the clearance: the mean of its worst share δ must not
+// exceed 0, which bounds the probability of being unsafe by δ for the sampled law (Rockafellar,
+// Uryasev: "Optimization of conditional value-at-risk", 2000), here at each stage separately.
 #include "controller/chance/tail_constraint.hpp"
 
 namespace qsmpc::controller {

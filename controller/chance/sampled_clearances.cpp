@@ -12,7 +12,7 @@ const Eigen::ArrayXd& SampledClearances::look(Eigen::Index stage, const SampledP
   Eigen::ArrayXd& least = stages_[stage - 1];
   states_ = paths.states(stage).leftCols(paths.paths());
   least.setConstant(states_.cols(), kInfinity);
-  std::optional<double> bearing;  // of the sines at hand
+  std::optional<double> bearing;  // that the present sines are for
   for (const DiscView& disc : unsafe_.discs()) {
     const DiscPlacement& placement = disc.placement;
     if (placement.at_position()) {
@@ -21,7 +21,7 @@ const Eigen::ArrayXd& SampledClearances::look(Eigen::Index stage, const SampledP
       }
       continue;
     }
-    // Discs that lie in the same direction have their sines in common, which take longest.
+    // Discs with the same bearing share their sines, the most expensive part.
     if (bearing != placement.bearing()) turn(placement);
     bearing = placement.bearing();
     centres_ = states_;
@@ -35,7 +35,7 @@ const Eigen::ArrayXd& SampledClearances::look(Eigen::Index stage, const SampledP
   return least;
 }
 
-/// Cosines and sines of the angle at which the discs with this bearing are seen.
+/// Cosines and sines of heading + bearing, for the discs with this bearing.
 void SampledClearances::turn(const DiscPlacement& placement) {
   cosines_.resize(states_.cols());
   sines_.resize(states_.cols());

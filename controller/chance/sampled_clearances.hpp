@@ -10,21 +10,22 @@ namespace qsmpc::controller {
 
 class SampledClearances {
  public:
-  /// Refers to the unsafe set.
+  /// Keeps a reference to the unsafe set.
   SampledClearances(const UnsafeSet& unsafe, Eigen::Index horizon)
       : unsafe_(unsafe), stages_(static_cast<std::size_t>(horizon)) {}
 
-  /// Clearances (m) of the paths at a stage, 1 … horizon, where they are now; no more than 1e9.
+  /// Computes the clearances (m) of the paths at a stage, 1 … horizon, at their present states;
+  /// capped at 1e9.
   const Eigen::ArrayXd& look(Eigen::Index stage, const SampledPaths& paths);
-  /// The same, as they were.
+  /// The clearances that `look` last computed for the stage.
   [[nodiscard]] const Eigen::ArrayXd& at(Eigen::Index stage) const { return stages_[stage - 1]; }
-  /// Adds −Σ_i multipliers_i ∂clearance_i/∂states to the adjoint of the stage. The paths are where
-  /// they were looked at.
+  /// Adds −Σ_i multipliers_i ∂clearance_i/∂states to the adjoint of the stage. The paths must be
+  /// unchanged since `look`.
   template <class Multipliers>
   void subtract(Eigen::Index stage, const Multipliers& multipliers, SampledPaths& paths) {
     Points& adjoint = paths.adjoint(stage);
     for (Eigen::Index i = 0; i < paths.paths(); ++i) {
-      // Few of them are near enough to anything to count.
+      // Most multipliers are zero: few paths are near the unsafe set.
       if (multipliers[i] != 0.0) adjoint.col(i) -= multipliers[i] * slope(stage, paths, i);
     }
   }
@@ -43,7 +44,7 @@ class SampledClearances {
   // Scratch of `look`.
   Points states_;
   Points centres_;
-  Eigen::ArrayXd cosines_;  // of heading and bearing, of the disc that was placed last
+  Eigen::ArrayXd cosines_;  // of heading + bearing, for the disc placed last
   Eigen::ArrayXd sines_;
   // Scratch of `slope`.
   Points one_;  // of the states

@@ -22,13 +22,14 @@ SampledPaths::SampledPaths(const models::Dynamics& dynamics, const InputBounds& 
 
 void SampledPaths::shift(Eigen::VectorXd& z) const {
   const Eigen::Index block = input_dim_ * state_dim_;
-  // What is read stands behind what is written.
+  // Reads always lie behind writes, so a forward copy is safe.
   const auto move = [&z](Eigen::Index to, Eigen::Index from, Eigen::Index count) {
     std::copy_n(z.data() + from, count, z.data() + to);
   };
   for (Eigen::Index k = 0; k + 1 < horizon_; ++k) {
     move(k * input_dim_, (k + 1) * input_dim_, input_dim_);
-    // By lags, so that a matrix goes on answering to the same noise; the first stage has none left.
+    // By lags, so that each matrix keeps responding to the same noise; the first stage has no
+    // matrices.
     move(first_matrix_[k], first_matrix_[k + 1], lags(k) * block);
   }
 }

@@ -1,9 +1,9 @@
-// Paths of the model under one policy, each with its own start and noise, which are held while
-// inputs are searched for: what sample averages, and constraints on samples, are made of.
+// Paths of the model under one policy, each with its own start and noise, which are held fixed
+// while the inputs are optimised: the basis of sample averages and of constraints on samples.
 //
 //     x_{k+1} = f(x_k, u_k) + w_k,   u_k = sat(v_k + K_k (x_k − x̄_k) + Σ_l M_kl w_{k−l})
 //
-// with x̄ the noise-free path from the belief's mean, which goes along as a path of its own.
+// with x̄ the noise-free path from the belief's mean, which is kept as one further path.
 #pragma once
 
 #include <algorithm>
@@ -21,51 +21,54 @@ namespace qsmpc::controller {
 
 /// Starts and noises of some paths.
 struct PathDraw {
-  Points start;               ///< state_dim x paths; no column: the noise-free path alone
+  Points start;               ///< state_dim x paths; no column: only the noise-free path
   std::vector<Points> noise;  ///< horizon of state_dim x paths
 };
 
 class SampledPaths {
  public:
-  /// Refers to the dynamics. memory: how many of the noises before a stage its input may answer to,
-  /// by matrices M that belong to the decision; 0: none. Only with paths of their own.
+  /// Keeps a reference to the dynamics. memory: the number of past noises that a stage's input
+  /// responds to, through matrices M that are part of the decision; 0: none. Only with sampled
+  /// paths.
   SampledPaths(const models::Dynamics& dynamics, const InputBounds& bounds, Eigen::Index horizon,
                Eigen::Index memory);
 
   [[nodiscard]] Eigen::Index horizon() const { return horizon_; }
-  /// Entries of a decision z: the inputs v stage by stage, and then the matrices M, stage by stage
-  /// and from the last noise backwards, each column by column.
+  /// Entries of a decision z: the inputs v stage by stage, then the matrices M stage by stage, from
+  /// the most recent noise backwards, each column-major.
   [[nodiscard]] Eigen::Index decisions() const { return decisions_; }
-  /// The entries of `z` that are inputs.
+  /// How many entries of `z`, the first, are inputs.
   [[nodiscard]] Eigen::Index inputs_in_decision() const { return horizon_ * input_dim_; }
-  /// The decision a stage later: what belonged to a stage belongs to the one before it.
+  /// Shifts the decision by one stage: the entries of a stage become those of the stage before it.
   void shift(Eigen::VectorXd& z) const;
 
-  /// From now on: these starts and noises, about the noise-free path from `mean` (state_dim). The
-  /// draw must stay alive and unchanged.
+  /// Sets the starts and noises, about the noise-free path from `mean` (state_dim). The draw must
+  /// stay alive and unchanged.
   void hold(const Eigen::VectorXd& mean, const PathDraw& draw);
-  /// From now on: these gains K (horizon of input_dim x state_dim); none if empty. Must stay alive.
+  /// Sets the gains K (horizon of input_dim x state_dim); none if empty. They must stay alive.
   void hold_gains(const std::vector<Eigen::MatrixXd>& gains);
 
-  /// Moves all paths to where `z` puts them, unless they are there.
+  /// Rolls out all paths under `z`, unless they are up to date.
   void rollout(const Eigen::VectorXd& z);
 
   /// States at stage 0 … horizon, state_dim x (paths + 1): the last is the noise-free one.
   [[nodiscard]] const Points& states(Eigen::Index stage) const { return stages_[stage].states; }
-  /// How many paths there are beside the noise-free one.
+  /// Number of paths, without the noise-free one.
   [[nodiscard]] Eigen::Index paths() const { return paths_; }
-  /// How many columns of `states`, the first, stand for the law: the paths or, without any, the
+  /// How many columns of `states`, the first, represent the law: the paths or, without any, the
   /// noise-free one.
   [[nodiscard]] Eigen::Index counted() const { return paths_ > 0 ? paths_ : 1; }
 
-  /// The mean cost of the counted paths as they are, with the weights ½ Q, R and P; what it depends
-  /// on is added to the adjoints.
+  /// The mean cost of the counted paths as last rolled out, with the weights ½ Q, R and P; adds its
+  /// derivatives to the adjoints.
   CostParts add_cost(const QuadraticCost& cost);
-  /// Adjoints of the states at stage 1 … horizon, as `states`, to add to; `clear_adjoints` first.
+  /// Adjoints of the states at stage 1 … horizon, shaped as `states`, to add to; call
+  /// `clear_adjoints` first.
   [[nodiscard]] Points& adjoint(Eigen::Index stage) { return stages_[stage].adjoint; }
   void clear_adjoints();
-  /// Adds to `gradient` (decisions) what the adjoints are as a derivative by the decision. Where an
-  /// input saturates, the derivative of the clamp is zero. Overwrites the adjoints.
+  /// Backward pass: adds to `gradient` (decisions) the derivative by the decision that the adjoints
+  /// amount to. Where an input saturates, the derivative of the clamp is zero. Overwrites the
+  /// adjoints.
   void pull_back(Eigen::VectorXd& gradient);
 
  private:
@@ -73,8 +76,8 @@ class SampledPaths {
     Points states;
     Points adjoint;        // of the states
     Points inputs;         // applied; input_dim x (paths + 1)
-    Points input_adjoint;  // of the inputs that are applied
-    Points pulled;         // of the states, through f alone
+    Points input_adjoint;  // of the applied inputs
+    Points pulled;         // of the states, through f only
   };
 
   [[nodiscard]] Eigen::Index lags(Eigen::Index stage) const { return std::min(stage, memory_); }

@@ -1,4 +1,4 @@
-// The scenario approach: every sampled path keeps clear at every stage (Calafiore, Campi: "The
+// The scenario approach: every sampled path stays clear at every stage (Calafiore, Campi: "The
 // scenario approach to robust control design", 2006; Blackmore et al. 2010).
 #include "controller/chance/scenario.hpp"
 
@@ -45,7 +45,7 @@ int scenario_samples(double risk, double confidence, int decisions) {
   };
   int most = decisions;
   while (!enough(most)) most *= 2;
-  int least = decisions;  // with as many samples as decisions or fewer, never
+  int least = decisions;  // fewer are never enough
   while (most - least > 1) {
     const int middle = least + (most - least) / 2;
     (enough(middle) ? most : least) = middle;

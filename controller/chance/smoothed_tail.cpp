@@ -8,15 +8,14 @@ double smoothed_cvar(const Eigen::Ref<const Eigen::ArrayXd>& losses, double risk
                      Eigen::ArrayXd& weights) {
   const double h = smoothing;
   const auto count = static_cast<double>(losses.size());
-  // s'((loss − t)), whose mean is δ at the minimum, falls with t: from 1 to 0 between these.
+  // The mean of s'(loss − t), which is δ at the minimum, falls with t, from 1 to 0 between these.
   double low = losses.minCoeff() - h;
   double high = losses.maxCoeff() + h;
   const auto share = [&](double t) {
     weights = ((losses - t + h) / (2.0 * h)).cwiseMax(0.0).cwiseMin(1.0);
     return weights.sum() / count;
   };
-  // Halving first, and then the line through both ends, which is the answer where both are on one
-  // linear piece.
+  // Bisection.
   for (int n = 0; n < 60 && high - low > 1e-12 * (1.0 + std::abs(low)); ++n) {
     const double middle = 0.5 * (low + high);
     (share(middle) > risk ? low : high) = middle;

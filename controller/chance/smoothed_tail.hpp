@@ -5,12 +5,11 @@
 
 namespace qsmpc::controller {
 
-/// min_t t + (1/(δ n)) Σ_i s(loss_i − t), where s is max(0, ·) rounded off over `smoothing` on
-/// either side, s(y) = (y + h)²/4h for |y| < h: the value at risk's tail mean of Rockafellar and
-/// Uryasev
-/// ("Optimization of conditional value-at-risk", 2000) as h → 0, and at most h/4δ more than that.
-/// `weights` (n) becomes its derivative by the losses. losses: finite; risk δ in (0, 1); smoothing
-/// h > 0.
+/// min_t t + (1/(δ n)) Σ_i s(loss_i − t), where s is max(0, ·) rounded off over h = `smoothing` on
+/// either side, s(y) = (y + h)²/4h for |y| < h. As h → 0 this is the conditional value at risk of
+/// Rockafellar and Uryasev ("Optimization of conditional value-at-risk", 2000), which it exceeds by
+/// at most h/4δ. `weights` (n) becomes its derivative by the losses. losses: finite; risk δ in (0,
+/// 1); smoothing h > 0.
 double smoothed_cvar(const Eigen::Ref<const Eigen::ArrayXd>& losses, double risk, double smoothing,
                      Eigen::ArrayXd& weights);
 

@@ -1,4 +1,4 @@
-// Controllers that keep a chance constraint of the literature, each by the same optimisation
+// Controllers with a chance constraint from the literature, all solved by the same optimisation
 // (chance/chance_planner.hpp).
 #include <algorithm>
 #include <memory>
@@ -17,7 +17,7 @@ ChancePlannerSettings chance_settings(const ControllerSettings& settings, std::s
       .problem = settings.problem, .chance = settings.chance, .constraint = std::move(constraint)};
 }
 
-/// Feedback about the path in any case: a tube is what it makes of the noise.
+/// Always with feedback about the path: the tube is the spread of the closed loop under the noise.
 ChancePlannerSettings tube_settings(const ControllerSettings& settings) {
   ChancePlannerSettings tube = chance_settings(settings, "cone");
   tube.problem.closed_loop = true;
@@ -26,8 +26,8 @@ ChancePlannerSettings tube_settings(const ControllerSettings& settings) {
   return tube;
 }
 
-/// How a policy goes on that answers to noise cannot be said as one that answers to the state:
-/// its decisions have the stage that is applied.
+/// Feedback on the noise cannot be written as a policy in the state beyond the first stage, so such
+/// decisions have only the stage that is applied.
 int stages_of(const ChancePlannerSettings& settings) {
   return settings.chance.memory > 0 ? 1 : settings.problem.horizon;
 }
@@ -71,7 +71,7 @@ DecisionParts parts_of(const ChancePlannerSettings& settings) {
   return {.stages = stages_of(settings), .cost = true, .status = true};
 }
 
-/// The entry of a constraint, which is in the table under the same name.
+/// The entry of a constraint that has the same name in its own table.
 template <const char* const& kName>
 ControllerEntry entry_of(const char* summary) {
   return {.name = kName,

@@ -11,7 +11,7 @@ ControllerEntry lqr_controller();
 ControllerEntry shield_controller();
 ControllerEntry mppi_controller();
 ControllerEntry risk_mppi_controller();
-// Those of one engine, in chance_controllers.cpp.
+// Those that share one planner, in chance_controllers.cpp.
 ControllerEntry tube_controller();
 ControllerEntry cone_controller();
 ControllerEntry cantelli_controller();

@@ -1,4 +1,4 @@
-// What a decision leads to, as certificates need it, whoever made it.
+// The predicted motion under any controller's decision, in the form that certificates need.
 #pragma once
 
 #include <memory>
@@ -18,15 +18,15 @@ namespace qsmpc::controller {
 
 class DecisionMotion {
  public:
-  /// `dynamics` must outlive it. settings: how beliefs are quantised and propagated for
-  /// controllers that give no particles. Throws std::invalid_argument on senseless ones.
+  /// `dynamics` must outlive it. settings: how beliefs are quantised and propagated for controllers
+  /// that give no particles. Throws std::invalid_argument on invalid ones.
   DecisionMotion(const models::Dynamics& dynamics, const PlannerSettings& settings);
 
   /// The motion over the stages of the decision's policy, from the situation's belief, with the
-  /// controller's particles or, where it has none, with particles of our own. Without a policy the
-  /// motion to the next state alone, from `posterior`: the law of the state now that the
-  /// observation is known, on which the input may depend in any way. Refers to all of these and to
-  /// this object, until the next call.
+  /// controller's particles or, if it has none, with particles made here. Without a policy: only
+  /// the motion to the next state, from `posterior`, the law of the state given the observation, on
+  /// which the input may depend in any way. Refers to all arguments and to this object; valid until
+  /// the next call.
   [[nodiscard]] PredictedMotion of(const Situation& situation, const Decision& decision,
                                    const Gaussian& posterior);
 

@@ -1,10 +1,10 @@
-// The linear-quadratic regulator: quadratic costs and linearised dynamics, inputs clamped to their
-// bounds; it knows neither obstacles nor noise.
+// The linear-quadratic regulator: quadratic costs, linearised dynamics, inputs clamped to their
+// bounds; it ignores obstacles and noise.
 //
-// About the target it is u = sat(K (x − r)) with the gain to which Riccati's recursion settles at
-// (r, 0). About the path it improves the noise-free path over the horizon by sweeps of affine
-// linear-quadratic problems (iterative LQR: Li and Todorov 2004), from the last period's inputs,
-// and regulates about it with the time-varying gains.
+// About the target it is u = sat(K (x − r)) with the gain that the Riccati recursion at (r, 0)
+// converges to. About the path it optimises the noise-free path over the horizon by iterative LQR
+// (Li and Todorov 2004), warm-started from the last period's inputs, and regulates about it with
+// the time-varying gains.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -22,16 +22,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A sweep that gains less than this, relatively, is the last one.
+// The sweeps stop when one reduces the cost by less than this, relatively.
 constexpr double kSweepSettled = 1e-6;
-// How often a step that does not pay is halved.
+// How often a step that does not reduce the cost is halved.
 constexpr int kHalvings = 8;
-// Riccati's recursion about the target has settled when the gain changes by less, relatively …
+// The Riccati recursion about the target has converged when the gain changes by less, relatively …
 constexpr double kGainSettled = 1e-10;
-// … and is cut off after so many stages where it never does.
+// … and is cut off after this many stages if it never does.
 constexpr int kLongestRecursion = 5000;
 
-/// ½ xᵀQx + uᵀRu over the stages and xᵀPx at the end have the Hessians Q, 2R and 2P.
+/// The stage cost ½ xᵀQx + uᵀRu and the terminal cost xᵀPx have the Hessians Q, 2R and 2P.
 LqrWeights curvature_of(const QuadraticCost& cost) {
   return {.state = cost.state, .input = 2.0 * cost.input, .terminal = 2.0 * cost.terminal};
 }
@@ -77,12 +77,12 @@ class TargetRegulator final : public Controller {
   PlannerSettings problem_;
   Eigen::VectorXd rest_;
   Eigen::MatrixXd gain_;
-  Eigen::VectorXd nearest_;  // what means the target, nearest to what is observed
+  Eigen::VectorXd nearest_;  // the target modulo 2π, nearest to the observation
   Eigen::VectorXd offset_;
   Decision decision_;
 };
 
-/// Regulates about a path that it improves in every period.
+/// Regulates about a path that it optimises in every period.
 class PathRegulator final : public Controller {
  public:
   PathRegulator(const models::Dynamics& dynamics, const PlannerSettings& problem)
@@ -107,12 +107,12 @@ class PathRegulator final : public Controller {
   [[nodiscard]] CostParts cost_of(const Policy& path) {
     return path_cost(path, cost_about_, cost_scratch_);
   }
-  /// Scratch of the sweeps, so that no period but the first allocates.
+  /// Scratch of the sweeps; reused, only the first period allocates.
   struct Sweep {
     Eigen::MatrixXd a;
     Eigen::MatrixXd b;
-    Eigen::MatrixXd value;  // of the cost to go: its Hessian …
-    Eigen::VectorXd slope;  // … and its slope on the path
+    Eigen::MatrixXd value;  // of the cost-to-go: its Hessian …
+    Eigen::VectorXd slope;  // … and its gradient on the path
     Eigen::MatrixXd value_b;
     Eigen::MatrixXd curvature;  // by the input
     Eigen::LDLT<Eigen::MatrixXd> ldlt;
@@ -132,19 +132,19 @@ class PathRegulator final : public Controller {
   const models::Dynamics& dynamics_;
   PlannerSettings problem_;
   LqrWeights weights_;
-  QuadraticCost cost_about_;  // about the target that is nearest to the belief
-  bool under_way_ = false;    // whether the inputs are those of the period before
+  QuadraticCost cost_about_;  // about the target nearest to the belief
+  bool under_way_ = false;    // whether the inputs come from the last period
   Policy policy_;
   CostParts cost_;
   Policy trial_;
-  Eigen::MatrixXd steps_;  // input_dim x horizon: what a sweep adds to the inputs
+  Eigen::MatrixXd steps_;  // input_dim x horizon: feedforward steps of a sweep
   LqrScratch scratch_;
   Sweep sweep_;
   PathCostScratch cost_scratch_;
   Decision decision_;
 };
 
-/// The backward sweep about the path: gains, and the steps of the affine problem's inputs.
+/// The backward sweep about the path: gains and feedforward steps.
 void PathRegulator::linearise() {
   const Eigen::Index dim = policy_.states.rows();
   const Eigen::Index inputs = policy_.inputs.rows();
@@ -189,7 +189,8 @@ void PathRegulator::linearise() {
   }
 }
 
-/// Takes the longest of the halved steps that pays. Returns whether there is one.
+/// Backtracking line search: takes the longest halved step that reduces the cost. Returns whether
+/// there is one.
 bool PathRegulator::improve(int& evaluations) {
   using View = Eigen::Map<const models::StateBatch>;
   const Eigen::Index dim = policy_.states.rows();
@@ -249,7 +250,7 @@ const Decision& PathRegulator::decide(const Situation& situation) {
       break;
     }
   }
-  // Inputs whose path is not finite are no start for the next period.
+  // Inputs whose path is not finite cannot warm-start the next period.
   under_way_ = status != SolverStatus::kNumericalTrouble;
   lqr_gains(dynamics_, policy_.states, policy_.inputs, weights_, scratch_, policy_.gains);
   for (Eigen::MatrixXd& gain : policy_.gains) {

@@ -11,12 +11,13 @@
 namespace qsmpc::controller {
 namespace {
 
-// The way to the target is longer than the straight line to it by about this factor.
+// Typical ratio of the way to the target to the straight line.
 constexpr double kDetour = 1.2;
-// All that is planned counts as spent until it comes to this share of the limit.
+// Regularises spent / planned: until the planned risk exceeds about this share of the limit, nearly
+// all of it counts as spent.
 constexpr double kUntold = 0.01;
-// More of what is left is not promised to a plan for that: where bad luck calls it in, the next
-// stage alone may need several times the plan's risk.
+// Cap on the share of the remaining budget that a plan gets on that account: in a bad case, the
+// next stage alone may need several times the plan's risk.
 constexpr double kMostPromised = 0.25;
 
 Eigen::Vector2d position_of(const models::SystemDescription& system,
@@ -73,7 +74,7 @@ void MissionBudget::spend(const Plan& plan) {
   if (!stages.empty()) {
     spent_ += stages.front();
     const double planned = std::accumulate(stages.begin(), stages.end(), 0.0);
-    // A plan that no limit could be kept with says nothing of those that keep theirs.
+    // A plan that could not keep its limits is capped: it says nothing about plans that do.
     planned_ += std::min(planned, limit_) / static_cast<double>(stages.size());
   }
   const models::SystemDescription& system = dynamics_.description();

@@ -1,5 +1,5 @@
 // Model predictive path integral control in its information-theoretic form (Williams et al. 2018):
-// certainty equivalence by sampling, or with noise in every rollout.
+// certainty-equivalent, or with noise in every rollout.
 #include "controller/control/controller_entries.hpp"
 #include "controller/control/mppi/sampling_controller.hpp"
 

@@ -1,5 +1,6 @@
-// Nominal model predictive control: the same problem on the mean of the belief, without noise, and
-// the same policy about what comes out. Certainty equivalence, the rival that knows no risk.
+// Nominal (certainty-equivalent) model predictive control: the same problem on the mean of the
+// belief, without noise, and the same policy about the solution. The baseline without any notion of
+// risk.
 #include <limits>
 
 #include "controller/control/controller_entries.hpp"
@@ -12,7 +13,7 @@ ControllerSettings mean_only(ControllerSettings settings) {
   settings.problem.propagator = "noise_free";
   settings.problem.state_points = 1;
   settings.problem.quantiser = QuantiserKind::kProduct;
-  // It knows no risk that it could limit.
+  // Without noise there is no risk to limit.
   settings.problem.risk = {};
   settings.mission = std::numeric_limits<double>::infinity();
   return settings;

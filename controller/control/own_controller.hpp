@@ -1,9 +1,9 @@
-// Controllers in C++ that are no part of qsmpc, from a class of one's own:
+// User-defined controllers in C++, outside qsmpc, from a class:
 //
 //   class Brake {
 //    public:
 //     explicit Brake(const qsmpc::own::Problem& problem) : inputs_(problem.input_dim()) {}
-//     void reset(std::uint64_t seed) {}  // may be missing
+//     void reset(std::uint64_t seed) {}  // optional
 //     qsmpc::own::Answer act(const qsmpc::own::Situation& situation) {
 //       return {.input = Eigen::VectorXd::Zero(inputs_)};
 //     }
@@ -12,9 +12,9 @@
 //   };
 //   QSMPC_REGISTER_CONTROLLER(Brake);
 //
-// Compiled into a shared library, it is what `controller: {kind: library, library: brake.so}` of a
-// scenario names. Needs Eigen and the standard library, and no library of qsmpc. Exceptions become
-// the reason of a drive that ends as a fault of its controller.
+// Compile it into a shared library, and name that in a scenario: `controller: {kind: library,
+// library: brake.so}`. Needs Eigen and the standard library, but no library of qsmpc. An exception
+// ends the drive as a fault of its controller, with the message as the reason.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 using VectorView = Eigen::Map<const Eigen::VectorXd>;
 using MatrixView = Eigen::Map<const RowMajor>;
 
-/// The resolved scenario; `raw` has all of it, with units.
+/// The resolved scenario; `raw` has all of its fields, with units.
 class Problem {
  public:
   explicit Problem(const qsmpc_problem& problem) : raw(problem) {}
@@ -60,14 +60,14 @@ class Problem {
   }
   [[nodiscard]] VectorView bounds_lower() const { return {raw.bounds_lower, state_dim()}; }
   [[nodiscard]] VectorView bounds_upper() const { return {raw.bounds_upper, state_dim()}; }
-  /// An obstacle a row.
+  /// One obstacle per row.
   [[nodiscard]] MatrixView obstacle_lower() const {
     return {raw.obstacle_lower, raw.obstacle_count, state_dim()};
   }
   [[nodiscard]] MatrixView obstacle_upper() const {
     return {raw.obstacle_upper, raw.obstacle_count, state_dim()};
   }
-  /// A constant of the system. Throws std::invalid_argument on a name that it does not have.
+  /// A constant of the system. Throws std::invalid_argument on an unknown name.
   [[nodiscard]] double parameter(const std::string& name) const {
     for (std::int32_t i = 0; i < raw.parameter_count; ++i) {
       if (name == raw.parameter_names[i]) return raw.parameter_values[i];
@@ -78,7 +78,7 @@ class Problem {
   const qsmpc_problem& raw;  // NOLINT(cppcoreguidelines-avoid-const-or-ref-data-members)
 };
 
-/// What is known when an input is to be chosen.
+/// What is known when an input is chosen.
 class Situation {
  public:
   Situation(const qsmpc_situation& situation, Eigen::Index state_dim)
@@ -91,18 +91,18 @@ class Situation {
         covariance(situation.covariance, state_dim, state_dim) {}
 
   std::int64_t period;        ///< of the drive, from 0
-  std::int64_t periods_left;  ///< this one with them, at most
+  std::int64_t periods_left;  ///< including this one, at most
   double time;                ///< s
   double deadline;            ///< s from now
-  VectorView observation;     ///< what is seen of the state now
-  VectorView mean;            ///< of the state as it was predicted before that
+  VectorView observation;     ///< observation of the present state
+  VectorView mean;            ///< of the state, predicted before the observation
   MatrixView covariance;
 };
 
 struct Answer {
-  Eigen::VectorXd input{};             ///< input_dim; not read where plans are asked for
+  Eigen::VectorXd input{};             ///< input_dim; ignored when plans are requested
   Eigen::MatrixXd plan_inputs{};       ///< input_dim x horizon
-  std::vector<RowMajor> plan_gains{};  ///< horizon of input_dim x state_dim, or none: zero
+  std::vector<RowMajor> plan_gains{};  ///< one input_dim x state_dim per stage; empty: zero
   const char* status = nullptr;        ///< see qsmpc_answer
   int evaluations = 0;
 };
@@ -116,7 +116,7 @@ inline void put(const char* text, char* error, std::size_t size) {
   error[length] = '\0';
 }
 
-/// The functions of the table for a class.
+/// The table's functions for a class.
 template <class Own>
 class Adapter {
  public:
@@ -167,7 +167,8 @@ class Adapter {
     }
     require(made.plan_inputs.rows() == inputs && made.plan_inputs.cols() == problem_.horizon(),
             "plan_inputs are not input_dim x horizon");
-    // A stage a column here is a stage a row there: the same order in memory.
+    // Column-major with one stage per column has the same memory order as row-major with one per
+    // row.
     std::copy_n(made.plan_inputs.data(), made.plan_inputs.size(), answer.plan_inputs);
     if (made.plan_gains.empty()) return;
     require(std::ssize(made.plan_gains) == problem_.horizon(), "plan_gains are not horizon");
@@ -191,7 +192,8 @@ class Adapter {
 }  // namespace detail
 }  // namespace qsmpc::own
 
-/// Makes the class the controller of the shared library, which has one. At namespace scope.
+/// Makes the class the controller of the shared library, which has exactly one. Use at namespace
+/// scope.
 #define QSMPC_REGISTER_CONTROLLER(Class)                                                       \
   extern "C" __attribute__((visibility("default"))) const qsmpc_controller_table*              \
   qsmpc_controller(void) {                                                                     \

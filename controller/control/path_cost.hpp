@@ -9,7 +9,7 @@
 
 namespace qsmpc::controller {
 
-/// Scratch, so that no path but the first allocates.
+/// Scratch; reused, only the first path allocates.
 struct PathCostScratch {
   Eigen::VectorXd away;
   Eigen::VectorXd weighted_state;

@@ -1,5 +1,5 @@
-// A controller that makes a plan for the belief in every period, and applies the first stage of its
-// policy to what it observes.
+// A controller that plans for the belief in every period, and applies the first stage of the policy
+// to the observation.
 #pragma once
 
 #include "controller/control/controller.hpp"
@@ -11,7 +11,7 @@ namespace qsmpc::controller {
 
 class PlanningController final : public Controller {
  public:
-  /// `dynamics` must outlive it. Throws std::invalid_argument as Planner.
+  /// `dynamics` must outlive it. Throws std::invalid_argument as Planner does.
   PlanningController(const models::Dynamics& dynamics, const ControllerSettings& settings)
       : planner_(dynamics, settings.problem),
         mission_(dynamics, settings.mission, settings.problem.cost.target),
@@ -37,7 +37,7 @@ class PlanningController final : public Controller {
   MissionBudget mission_;
   UnsafeSet unsafe_;
   UnsafeWeightScratch weighing_;
-  Eigen::VectorXd offset_;  // of what is observed from the nominal state
+  Eigen::VectorXd offset_;  // of the observation from the nominal state
   Decision decision_;
 };
 

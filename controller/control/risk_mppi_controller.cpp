@@ -1,7 +1,7 @@
 // Risk-aware model predictive path integral control: every sampled sequence is rolled out in the
-// same M realisations of the noise, and costs the mean of its quadratic cost and the conditional
-// value at risk of what being unsafe costs it. After Yin, Zhang, Tsiotras: "Risk-aware model
-// predictive path integral control using conditional value-at-risk", ICRA 2023.
+// same M realisations of the noise; its cost is the mean of the quadratic cost plus the conditional
+// value at risk of the unsafe cost. After Yin, Zhang, Tsiotras: "Risk-aware model predictive path
+// integral control using conditional value-at-risk", ICRA 2023.
 #include "controller/control/controller_entries.hpp"
 #include "controller/control/mppi/sampling_controller.hpp"
 

@@ -1,9 +1,9 @@
-// A shield about another controller: where what it does is certified to be unsafe with more than a
-// limit, at any of the stages looked ahead, it is overruled by a plan that is certified within it
-// or, where none is found, to the least (after Alshiekh et al.: "Safe reinforcement learning via
-// shielding", 2018, with a certificate for a model checker).
+// A shield about another controller: if the certified probability that its policy is unsafe at any
+// stage of the look-ahead exceeds a limit, it is overruled by a plan certified within the limit or,
+// if none is found, the plan with the lowest certificate (after Alshiekh et al.: "Safe
+// reinforcement learning via shielding", 2018, with a certificate in place of a model checker).
 //
-// A vehicle that turns before it moves aside is not saved by a look at the next state alone.
+// Looking at the next state alone is not enough: a vehicle has to turn before it can move aside.
 #include <algorithm>
 #include <memory>
 #include <stdexcept>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kShield = "shield";
 
-/// A plan within the limit, or else at the least risk.
+/// Settings for a plan within the limit or, failing that, of least risk.
 PlannerSettings evasion(const ControllerSettings& settings) {
   PlannerSettings problem = settings.problem;
   if (settings.shield.stages > 0) problem.horizon = settings.shield.stages;
@@ -67,7 +67,7 @@ class Shield final : public Controller {
   [[nodiscard]] std::string log() const override { return inner_->log(); }
 
  private:
-  /// What the other one plans; where it does not plan, its input for as long as is looked ahead.
+  /// Takes the inner controller's policy; if it has none, its input held over the look-ahead.
   void take_policy(const Decision& inner, const Situation& situation) {
     if (inner.policy != nullptr) {
       policy_ = *inner.policy;
@@ -80,7 +80,8 @@ class Shield final : public Controller {
     nominal_states(dynamics_, situation.belief.mean, policy_.inputs, policy_.states);
   }
 
-  /// Of being unsafe at any of the stages looked ahead, as far as there is a policy.
+  /// Certified probability of being unsafe at any stage of the look-ahead, as far as the policy
+  /// reaches.
   [[nodiscard]] double certified_risk(const Situation& situation) {
     const Eigen::Index stages = std::min<Eigen::Index>(evasion_.horizon, policy_.horizon());
     ahead_.bounds = policy_.bounds;
@@ -92,7 +93,7 @@ class Shield final : public Controller {
     return certified_.plan;
   }
 
-  /// The plan that is certified to less takes the other's place, unless there is none.
+  /// Replaces the policy by a plan with a lower certificate, if there is one.
   void overrule(const Situation& situation) {
     const Plan& plan = evader_.plan(situation.belief, {.deadline = situation.deadline,
                                                        .period = situation.period,
@@ -104,7 +105,7 @@ class Shield final : public Controller {
     decision_.risk_exceeded = !less || !plan.risk.kept;
     if (decision_.risk_exceeded) decision_.status = SolverStatus::kRiskExceeded;
     if (!less) return;
-    decision_.believed = plan.risk.stages.front();  // what it is certified for
+    decision_.believed = plan.risk.stages.front();  // its certificate
     const Eigen::Index stages = std::min(policy_.horizon(), plan.policy.horizon());
     policy_.inputs.leftCols(stages) = plan.policy.inputs.leftCols(stages);
     std::copy_n(plan.policy.gains.begin(), stages, policy_.gains.begin());
@@ -114,7 +115,7 @@ class Shield final : public Controller {
 
   const models::Dynamics& dynamics_;
   double limit_;
-  QuadraticCost cost_;  // about what the inner controller's plan is to
+  QuadraticCost cost_;  // about the target of the inner controller's plan
   InputBounds bounds_;
   PlannerSettings evasion_;
   std::unique_ptr<Controller> inner_;

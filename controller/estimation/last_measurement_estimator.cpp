@@ -1,5 +1,5 @@
-// The state is N(y, R): what the last observation y alone says of it, under a flat prior. What was
-// seen before is left out, which a filter would weigh in.
+// The state is N(y, R): its law given only the last observation y, under a flat prior. Unlike a
+// filter, this ignores earlier observations.
 #include "controller/estimation/estimator.hpp"
 
 namespace qsmpc::controller {

@@ -7,8 +7,8 @@
 
 namespace qsmpc::controller {
 
-/// The symmetric S with S² = `covariance` (d x d, finite, symmetric); what rounding leaves of
-/// negative eigenvalues counts as zero.
+/// The symmetric S with S² = `covariance` (d x d, finite, symmetric); negative eigenvalues, which
+/// come from rounding, count as zero.
 [[nodiscard]] inline Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
   const models::SymmetricEigen eigen = models::symmetric_eigen(covariance);
   return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *

@@ -1,5 +1,5 @@
-// A mixture of Gaussians: split where the closed loop bends most, moved by the unscented transform,
-// and merged by Runnalls' algorithm. Equations and sources: docs/theory/laws.md.
+// A mixture of Gaussians: split where the closed loop is most nonlinear, moved by the unscented
+// transform, and merged by Runnalls' algorithm. Equations and sources: docs/theory/laws.md.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -16,15 +16,15 @@
 namespace qsmpc::controller {
 namespace {
 
-/// Where a component bends most.
+/// The largest bend of a component by the closed loop.
 struct Bend {
-  double size = 0.0;    ///< what second and third differences along z come to, the state's unit
-  double spread = 0.0;  ///< root mean square of what first differences come to, over all z
+  double size = 0.0;          ///< of the second and third differences along z, in the state's unit
+  double spread = 0.0;        ///< root mean square of the first differences over all z
   Eigen::VectorXd direction;  ///< z, a unit vector in whitened coordinates
 };
 
 /// Directions along which a component may be split, in whitened coordinates (d x n): the
-/// eigenvectors of its covariance, and those that take all there is of one state's variance, S e_i.
+/// eigenvectors of its covariance, and the S e_i, which carry all of one state's variance.
 Eigen::MatrixXd candidate_directions(const Eigen::MatrixXd& eigenvectors,
                                      const Eigen::MatrixXd& root) {
   const Eigen::Index dim = root.rows();
@@ -33,7 +33,7 @@ Eigen::MatrixXd candidate_directions(const Eigen::MatrixXd& eigenvectors,
   candidates.rightCols(dim) = root;
   for (auto column : candidates.rightCols(dim).colwise()) {
     const double size = column.norm();
-    if (size > 0.0) column /= size;  // a state without variance stays zero, and bends nothing
+    if (size > 0.0) column /= size;  // a state without variance stays zero and adds no bend
   }
   return candidates;
 }
@@ -47,8 +47,8 @@ struct Differences {
   [[nodiscard]] Eigen::MatrixXd odd() const { return 0.5 * (ahead - behind); }
 };
 
-/// The second differences are blind to what is odd about the mean, as a clamp is whose bounds are
-/// equally far: first differences at full and at half reach tell that.
+/// Second differences are blind to what is odd about the mean, such as a clamp with equally distant
+/// bounds; comparing first differences at full and at half reach reveals it.
 Bend bend_of(const LawProblem& problem, Eigen::Index stage, const Eigen::VectorXd& mean,
              const Eigen::MatrixXd& covariance) {
   // As far out as the nodes of the three-point Gauss-Hermite rule.
@@ -75,7 +75,7 @@ Bend bend_of(const LawProblem& problem, Eigen::Index stage, const Eigen::VectorX
   Bend bend;
   Eigen::Index best = 0;
   bend.size = std::sqrt(squares.maxCoeff(&best));
-  // The eigenvectors alone are a basis.
+  // Only the eigenvectors form a basis.
   bend.spread = full.odd().leftCols(mean.size()).norm() / kReach;
   bend.direction = candidates.col(best);
   return bend;
@@ -99,8 +99,8 @@ class GaussianMixtureLaw final : public LawPropagator {
     return reduce_mixture(std::move(moved), settings_.components);
   }
 
-  /// Splits the component that bends most, by its weight, until none bends or there are `split`
-  /// times as many as are kept.
+  /// Repeatedly splits the component with the largest weighted bend, until no bend exceeds the
+  /// tolerance or there are `split` times as many components as are kept.
   [[nodiscard]] GaussianMixture split_bent(const LawProblem& problem, Eigen::Index stage,
                                            GaussianMixture law) const {
     if (settings_.components == 1) return law;
@@ -122,7 +122,7 @@ class GaussianMixtureLaw final : public LawPropagator {
     return law;
   }
 
-  /// −1 where none bends by more than the tolerance; what is not finite does not.
+  /// −1 if none bends by more than the tolerance; non-finite bends do not count.
   [[nodiscard]] Eigen::Index most_bent(const GaussianMixture& law,
                                        const std::vector<Bend>& bends) const {
     Eigen::Index worst = -1;
@@ -138,7 +138,7 @@ class GaussianMixtureLaw final : public LawPropagator {
     return worst;
   }
 
-  /// The first part takes the component's place, the others come last.
+  /// The first part replaces the component, the others are appended.
   static void split_component(GaussianMixture& law, Eigen::Index component,
                               const Eigen::VectorXd& direction, const NormalSplit& split) {
     const GaussianMixture parts =

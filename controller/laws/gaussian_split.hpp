@@ -12,7 +12,7 @@ struct NormalSplit {
   double deviation = 1.0;
 };
 
-/// The split into 3 or 5 parts: the nodes and weights of the Gauss-Hermite rule, drawn together by
+/// The split into 3 or 5 parts: the nodes and weights of the Gauss-Hermite rule, contracted by
 /// √(1 − deviation²), so that moments agree with those of N(0, 1) up to order 5 or 9. The
 /// deviations are 0.7 and 0.55: W2 to N(0, 1) is 0.018 and 0.014, and the densities differ by 4 and
 /// 5 % in the mean square.

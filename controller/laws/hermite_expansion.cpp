@@ -25,7 +25,7 @@ void append_degree(Eigen::Index germ, int left, Eigen::VectorXi& index,
   }
 }
 
-/// binomial(germs + order, order), or something above `most`.
+/// binomial(germs + order, order), or some value above `most`.
 Eigen::Index term_count(Eigen::Index germs, int order, Eigen::Index most) {
   Eigen::Index count = 1;
   for (int k = 1; k <= order && count <= most; ++k) count = count * (germs + k) / k;
@@ -114,7 +114,7 @@ Eigen::Index HermiteBasis::term_of(const Eigen::VectorXi& exponents) const {
 
 // With Wick powers :ξ^α: = √(α!) h_α, E[:q(ξ): | ξ'] = :q(R ξ'): for every homogeneous polynomial
 // q, R = E ξ ξ'ᵀ (Janson: "Gaussian Hilbert Spaces", 1997, theorem 3.9). So the substitution is
-// worked out for monomials, degree by degree: (R x)^α = (R x)_i (R x)^{α − e_i}.
+// computed for monomials, degree by degree: (R x)^α = (R x)_i (R x)^{α − e_i}.
 Eigen::MatrixXd HermiteBasis::conditional_expectation(const Eigen::MatrixXd& correlation) const {
   Eigen::MatrixXd powers = Eigen::MatrixXd::Zero(terms(), terms());
   powers(0, 0) = 1.0;

@@ -1,12 +1,12 @@
-// Methods of the literature that move the law of a state along a horizon, beside this program's
-// own: what they know of it is compared with many simulated paths by `qsmpc predict --methods`.
+// Methods from the literature, and this program's own, that propagate the law of a state along a
+// horizon. `qsmpc predict --methods` compares their laws with many simulated paths.
 //
 //   const LawProblem problem{.dynamics = *car, .belief = belief, …};
 //   for (const LawMethod& method : law_methods()) {
 //     const std::vector<StageLaw> laws = method.make({})->propagate(problem);
 //   }
 //
-// A new method is one file with a class and its entry, and a line in the table in
+// A new method takes one file with a class and its entry, and a line in the table in
 // law_methods.cpp. docs/theory/laws.md has the equations and sources.
 #pragma once
 
@@ -46,10 +46,10 @@ class LawPropagator {
   LawPropagator& operator=(LawPropagator&&) = delete;
   virtual ~LawPropagator() = default;
 
-  /// The laws of the states at stages 0 … horizon. From the first stage whose law is not finite on,
-  /// all are `lost_law`. The same call gives the same laws. Throws std::invalid_argument where
-  /// belief, noise or policy are not of the dynamics' dimensions, on covariances that are none, and
-  /// where the method's settings make no sense in this dimension.
+  /// The laws of the states at stages 0 … horizon. From the first stage with a non-finite law
+  /// onwards, all are `lost_law`. The same call gives the same laws. Throws std::invalid_argument
+  /// if belief, noise or policy do not match the dynamics' dimensions, on invalid covariances, and
+  /// if the method's settings are invalid in this dimension.
   [[nodiscard]] std::vector<StageLaw> propagate(const LawProblem& problem);
 
  private:
@@ -63,8 +63,8 @@ class LawPropagator {
 /// Sigma points at the mean and α √(d + κ) along the columns of the covariance's root, d the
 /// dimension of the state; the centre's weight in the covariance is raised by 1 − α² + β. As the
 /// noise is additive, sigma points of state and noise (the augmented form) with some κ give the
-/// same as these with κ + d. The 1e-3 that is often taken for α amplifies a clamp at the mean,
-/// where a plan's inputs often are, a thousandfold.
+/// same as these with κ + d. The common choice α = 1e-3 amplifies a clamp at the mean, where a
+/// plan's inputs often are, a thousandfold.
 struct UnscentedSettings {
   double alpha = 0.5;  ///< > 0
   double beta = 2.0;   ///< 2 suits Gaussians
@@ -80,13 +80,14 @@ struct LawSettings {
 
   // polynomial_chaos
   int order = 3;          ///< total degree of the polynomials, 1 to 8
-  int most_nodes = 1000;  ///< of the tensor grid; where it would have more, the grid is sparse
+  int most_nodes = 1000;  ///< of the tensor grid; if it would have more, a sparse grid is used
 
   // gaussian_mixture
   int components = 27;  ///< kept after a step
   int split = 3;        ///< parts of a component that is split: 3 or 5
-  /// A component is split where what the map bends it along some direction, at one standard
-  /// deviation, exceeds this share of its spread after the step (root of the covariance's trace).
+  /// A component is split where the map's nonlinearity along some direction, at one standard
+  /// deviation, exceeds this share of the component's spread after the step (root of the
+  /// covariance's trace).
   double least_bend = 1e-3;
 
   // quantised methods
@@ -96,7 +97,8 @@ struct LawSettings {
   int compressed_points = 100;
 };
 
-/// Throws std::invalid_argument, which says what, on settings that make no sense in any dimension.
+/// Throws std::invalid_argument, whose message names the setting, on settings that are invalid in
+/// every dimension.
 void check_law_settings(const LawSettings& settings);
 
 struct LawMethod {
@@ -106,7 +108,7 @@ struct LawMethod {
 };
 
 /// The table of methods: "monte_carlo", "unscented", "polynomial_chaos", "gaussian_mixture",
-/// "linearised", and under their names all of `propagators()`.
+/// "linearised", and all of `propagators()` under their names.
 [[nodiscard]] const std::vector<LawMethod>& law_methods();
 
 /// Throws std::invalid_argument on an unknown name.

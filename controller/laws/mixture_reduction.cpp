@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRegularShare = 1e-12;
 
-/// The components that are left, and the costs of merging their pairs.
+/// The remaining components, and the costs of merging their pairs.
 class MixtureMerger {
  public:
   explicit MixtureMerger(GaussianMixture mixture) : mixture_(std::move(mixture)) {
@@ -55,7 +55,7 @@ class MixtureMerger {
     return 2.0 * models::cholesky_factor(covariance + regular_).diagonal().array().log().sum();
   }
 
-  /// Covariance of the components i and j together.
+  /// Covariance of the components i and j when merged.
   [[nodiscard]] Eigen::MatrixXd merged_covariance(Eigen::Index i, Eigen::Index j) const {
     const double weight = mixture_.weights[i] + mixture_.weights[j];
     const double share = mixture_.weights[i] / weight;
@@ -71,7 +71,7 @@ class MixtureMerger {
                   first * log_determinants_[i] - second * log_determinants_[j]);
   }
 
-  /// Component `first` becomes both; first < second.
+  /// Merges both into component `first`; first < second.
   void merge(Eigen::Index first, Eigen::Index second) {
     const double weight = mixture_.weights[first] + mixture_.weights[second];
     const double share = mixture_.weights[first] / weight;
@@ -94,7 +94,7 @@ class MixtureMerger {
   Eigen::MatrixXd regular_;
   std::vector<bool> alive_;
   Eigen::VectorXd log_determinants_;
-  Eigen::MatrixXd costs_;  // of pairs i < j that are left; infinite elsewhere
+  Eigen::MatrixXd costs_;  // of remaining pairs i < j; infinite elsewhere
 };
 
 }  // namespace

@@ -32,8 +32,8 @@ class MonteCarloLaw final : public LawPropagator {
     return DiscreteMeasure{.locations = std::move(next), .weights = points.weights};
   }
 
-  /// Of the belief at 0, of the noise that leads to the stage else: drawn once, so that the laws of
-  /// two policies differ by the policies alone.
+  /// Standard normals for the belief at stage 0, otherwise for the noise that leads to the stage:
+  /// drawn once, so that the laws of two policies differ only by the policies.
   [[nodiscard]] const Points& normals(const LawProblem& problem, Eigen::Index stage) {
     const Eigen::Index dim = problem.belief.mean.size();
     if (!frozen_.empty() && frozen_.front().rows() != dim) frozen_.clear();

@@ -12,8 +12,8 @@
 namespace qsmpc::controller {
 namespace {
 
-/// A node's place on every axis: the rule it is of and its number there, with the centre, which all
-/// rules of an odd size have, as that of the first.
+/// A node's key on every axis: its rule and its index in the rule. The centre, which all rules of
+/// odd size share, counts as that of the first.
 using NodeKey = std::vector<std::pair<int, int>>;
 
 std::vector<NormalGrid> rules_up_to(int count) {
@@ -73,8 +73,8 @@ class GridSum {
 };
 
 /// Smolyak's sum: every choice of rule sizes 1 + level_j with Σ level_j = L − k, 0 ≤ k < dim, with
-/// the factor (−1)^k binomial(dim − 1, k). From `axis` on, `left` levels are to be given out at
-/// most.
+/// the factor (−1)^k binomial(dim − 1, k). From `axis` on, at most `left` levels remain to be
+/// distributed.
 void add_smolyak(Eigen::Index axis, int left, std::vector<int>& sizes, GridSum& sum) {
   const auto dim = static_cast<Eigen::Index>(sizes.size());
   if (axis == dim) {

@@ -10,7 +10,7 @@ namespace qsmpc::controller {
 /// Σ weights_q g(nodes_q) ≈ E g(ξ), ξ ~ N(0, I).
 struct NormalGrid {
   Points nodes;             ///< dim x n
-  Eigen::VectorXd weights;  ///< n, sums to one; negative ones among them where the grid is sparse
+  Eigen::VectorXd weights;  ///< n, sums to one; some are negative if the grid is sparse
 };
 
 /// The Gauss-Hermite rule of `count` ≥ 1 nodes, ascending: exact up to degree 2 count − 1.

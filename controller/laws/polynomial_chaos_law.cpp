@@ -14,7 +14,7 @@
 namespace qsmpc::controller {
 namespace {
 
-/// Of a covariance's largest eigenvalue; directions with less count as without variance.
+/// Share of a covariance's largest eigenvalue below which a direction counts as having no variance.
 constexpr double kLeastVariance = 1e-13;
 
 /// The pseudo-inverse of covariance_root(covariance).
@@ -29,9 +29,9 @@ Eigen::MatrixXd inverse_root(const Eigen::MatrixXd& covariance) {
 
 /// The law of x + w for x of this expansion in ξ and w ~ N(0, Σ), as an expansion of the same order
 /// in new germs ξ' = S^−½ (C₁ ξ + w), S = C₁ C₁ᵀ + Σ, C₁ the coefficients of the first degree: the
-/// first degree has all that C₁ ξ + w is, and higher degrees become their conditional expectations
-/// given ξ'. The variance that these lack is given to the first degree, so that mean and covariance
-/// are those of x + w.
+/// first degree represents C₁ ξ + w exactly, and higher degrees become their conditional
+/// expectations given ξ'. The variance that these lose is added to the first degree, so that mean
+/// and covariance are those of x + w.
 HermiteExpansion with_noise(const HermiteExpansion& expansion, const Eigen::MatrixXd& noise) {
   const Eigen::Index germs = expansion.basis.germs();
   const Eigen::MatrixXd first = expansion.coefficients.middleCols(1, germs);

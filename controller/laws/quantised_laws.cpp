@@ -1,4 +1,4 @@
-// This program's own predictions among the others: one method for every propagator of the table.
+// This program's own predictions as methods: one for every propagator of the table.
 #include <memory>
 #include <utility>
 

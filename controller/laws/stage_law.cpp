@@ -24,12 +24,12 @@ Eigen::MatrixXd law_covariance(const GaussianMixture& law) {
 }
 Eigen::MatrixXd law_covariance(const HermiteExpansion& law) { return law.covariance(); }
 
-/// For every choice, the first index whose cumulated weight exceeds it; grouped by index.
+/// For every choice, the first index whose cumulative weight exceeds it; grouped by index.
 std::vector<std::vector<Eigen::Index>> choose(const Eigen::VectorXd& weights,
                                               const Eigen::VectorXd& choices) {
   std::vector<double> cumulated(weights.begin(), weights.end());
   for (std::size_t i = 1; i < cumulated.size(); ++i) cumulated[i] += cumulated[i - 1];
-  // The sum is one up to rounding; every choice has to find an index.
+  // The sum is one only up to rounding, but every choice must find an index.
   cumulated.back() = std::numeric_limits<double>::infinity();
   std::vector<std::vector<Eigen::Index>> chosen(cumulated.size());
   for (Eigen::Index i = 0; i < choices.size(); ++i) {
@@ -64,7 +64,7 @@ Points draws_of(const GaussianMixture& law, const StandardDraws& draws) {
 }
 
 Points draws_of(const HermiteExpansion& law, const StandardDraws& draws) {
-  constexpr Eigen::Index kBlock = 4096;  // the values of all polynomials at so many stay small
+  constexpr Eigen::Index kBlock = 4096;  // keeps the table of polynomial values small
   Points out(law.coefficients.rows(), draws.count());
   for (Eigen::Index begin = 0; begin < draws.count(); begin += kBlock) {
     const Eigen::Index size = std::min(kBlock, draws.count() - begin);

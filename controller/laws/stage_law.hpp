@@ -1,5 +1,5 @@
-// What a method of prediction knows of the state at one stage: points, a mixture of Gaussians, or a
-// polynomial of standard normals.
+// The law of the state at one stage as a prediction method represents it: points, a mixture of
+// Gaussians, or a polynomial of standard normals.
 //
 //   const StageLaw law = gaussian_law({.mean = m, .covariance = p});
 //   unsafe_probability(law, unsafe, quasi_random_draws(law_dim(law), 1 << 17));
@@ -31,10 +31,10 @@ struct GaussianMixture {
 
 using StageLaw = std::variant<DiscreteMeasure, GaussianMixture, HermiteExpansion>;
 
-/// A mixture of one.
+/// A mixture of one component.
 [[nodiscard]] StageLaw gaussian_law(const Gaussian& gaussian);
 
-/// What is left where a prediction is not finite: one point that is not a number.
+/// The law of a prediction that is not finite: one NaN point.
 [[nodiscard]] StageLaw lost_law(Eigen::Index dim);
 
 [[nodiscard]] Eigen::Index law_dim(const StageLaw& law);
@@ -46,13 +46,13 @@ using StageLaw = std::variant<DiscreteMeasure, GaussianMixture, HermiteExpansion
 /// The covariance (dim x dim), exactly: of a mixture, that of the components and of their means.
 [[nodiscard]] Eigen::MatrixXd covariance_of(const StageLaw& law);
 
-/// The draws of the law that `draws` (of its dimension) stand for, dim x count. Components are
-/// chosen in their order, by the cumulated weights.
+/// The draws of the law made from `draws` (of its dimension), dim x count. Components are chosen in
+/// order, by their cumulative weights.
 [[nodiscard]] Points law_draws(const StageLaw& law, const StandardDraws& draws);
 
-/// The probability of the unsafe set at `stage`: of points exactly; otherwise the share of the
-/// law's `draws` that are unsafe, which knows nothing of probabilities below one over their number.
-/// What is not finite counts as unsafe.
+/// The probability of the unsafe set at `stage`: exact for points; otherwise the share of the law's
+/// `draws` that are unsafe, which cannot resolve probabilities below one over their number. A law
+/// that is not finite counts as unsafe.
 [[nodiscard]] double unsafe_probability(const StageLaw& law, const UnsafeSet& unsafe,
                                         const StandardDraws& draws, Eigen::Index stage = 0);
 

@@ -1,5 +1,5 @@
 // Draws from which those of any law are made: random ones, and quasi-random ones, whose averages
-// are nearer to expectations than those of as many random ones.
+// are closer to expectations than those of as many random ones.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace qsmpc::controller {
 
-/// `count` independent pairs of a number that chooses a component of a mixture and a standard
-/// normal vector.
+/// `count` independent pairs of a uniform number, which chooses a component of a mixture, and a
+/// standard normal vector.
 struct StandardDraws {
   Eigen::VectorXd choices;  ///< count, uniform in (0, 1]
   Points normals;           ///< dim x count
@@ -21,17 +21,17 @@ struct StandardDraws {
   [[nodiscard]] Eigen::Index count() const { return choices.size(); }
 };
 
-/// Draws that depend on `seed` alone, and on nothing that paths of the model are made from. dim,
-/// count ≥ 1.
+/// Draws that depend only on `seed`, independent of the draws behind simulated paths of the model.
+/// dim, count ≥ 1.
 [[nodiscard]] StandardDraws random_draws(Eigen::Index dim, Eigen::Index count, std::uint64_t seed);
 
 /// The points of Richtmyer's sequence, multiples of the roots of primes modulo 1, beside
 /// equidistant choices, by the inverse of Φ. dim, count ≥ 1.
 [[nodiscard]] StandardDraws quasi_random_draws(Eigen::Index dim, Eigen::Index count);
 
-/// Numbers of paths of the model (models::RandomStream::kPrediction) of which no simulation has
-/// any: those of the method "monte_carlo" and of `random_draws` begin with these, so that a law and
-/// the paths it is compared with are independent, whatever their seeds.
+/// First path numbers (models::RandomStream::kPrediction) of the method "monte_carlo" and of
+/// `random_draws`. No simulation uses path numbers in these ranges, so that a law and the paths it
+/// is compared with are independent, whatever their seeds.
 inline constexpr std::uint64_t kFirstMethodPath = std::uint64_t{1} << 63;
 inline constexpr std::uint64_t kFirstLawDraw = std::uint64_t{3} << 62;
 

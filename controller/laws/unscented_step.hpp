@@ -6,11 +6,11 @@
 namespace qsmpc::controller {
 
 /// Throws std::invalid_argument unless α² (d + κ) > 0 and α² (d + κ) ≥ d (α² − β), without which
-/// covariances need not be positive semidefinite.
+/// covariances may fail to be positive semidefinite.
 void check_unscented(const UnscentedSettings& settings, Eigen::Index dim);
 
 /// The mixture after the period of `stage`: every component moved by the transform, its covariance
-/// that of the sigma points plus that of the noise. Settings that check_unscented takes.
+/// that of the sigma points plus that of the noise. settings: as check_unscented accepts them.
 ///
 /// With s² = α² (d + κ), the root S of the covariance and δ_j = g(m ± s S_j) − g(m) over all 2d,
 /// the weights of the scaled transform (Julier 2002; Wan and van der Merwe 2000) come to

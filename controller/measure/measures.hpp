@@ -7,7 +7,7 @@
 
 namespace qsmpc::controller {
 
-/// Points of a discrete measure: one coordinate a row, one point a column.
+/// Points of a discrete measure: one coordinate per row, one point per column.
 using Points = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// N(mean, covariance); the covariance may be singular.

@@ -21,7 +21,7 @@ using Simplex = lemon::NetworkSimplex<Graph, std::int64_t, std::int64_t>;
 
 constexpr std::int64_t kWholeMass = std::int64_t{1} << 60;
 // The simplex starts from artificial arcs of cost 2^62. A node's potential differs from it, or from
-// zero, by the costs along a path, which have to stay well below that for sums to fit 64 bits.
+// zero, by the costs along a path, which must stay well below that for sums to fit in 64 bits.
 constexpr double kPathCost = 0x1p61;
 
 /// The points of a measure that have weight, with integer masses that sum to kWholeMass.
@@ -41,7 +41,7 @@ Supply make_supply(const DiscreteMeasure& measure) {
     kept.push_back(i);
     supply.masses.push_back(mass);
   }
-  // What rounding left over (some 1e-16 of the whole) goes to the heaviest point.
+  // The rounding remainder (about 1e-16 of the total) goes to the heaviest point.
   *std::max_element(supply.masses.begin(), supply.masses.end()) +=
       kWholeMass - std::accumulate(supply.masses.begin(), supply.masses.end(), std::int64_t{0});
   supply.locations = measure.locations(Eigen::all, kept);
@@ -58,7 +58,7 @@ std::vector<double> pairwise_squared_distances(const Points& from, const Points&
   return distances;
 }
 
-/// Reads the costs of arcs, which are numbered in the order of `distances`, in fixed point.
+/// The costs of arcs, which are numbered in the order of `distances`, in fixed point.
 struct FixedPointCosts {
   const std::vector<double>& distances;
   double scale;
@@ -67,7 +67,7 @@ struct FixedPointCosts {
   }
 };
 
-/// Σ mass · distance of an optimal plan between `from` and `to`, for a whole mass of one.
+/// Σ mass · distance of an optimal plan between `from` and `to`, for a total mass of one.
 double transport_cost(const Supply& from, const Supply& to) {
   const auto rows = static_cast<int>(from.masses.size());
   const auto columns = static_cast<int>(to.masses.size());

@@ -10,19 +10,19 @@
 namespace qsmpc::controller {
 
 /// W2 of two discrete measures in the same space: the transport problem is solved by the network
-/// simplex method, in integers, so that it ends at an optimal plan. Points without weight take no
-/// part.
+/// simplex method, in integers, so that it ends at an optimal plan. Points of weight zero are
+/// ignored.
 ///
-/// What rounding leaves: masses are doubles, and are known to about 1e-16 of the whole; squared
-/// distances are compared in fixed point, 1e-14 of the largest one, D², apart. The cost of the plan
-/// is then summed in double precision. So the square of the result is within about 1e-14·D² of
+/// Effects of rounding: masses are doubles, known to about 1e-16 of the total; squared distances
+/// are compared in fixed point, with a resolution of 1e-14 of the largest one, D². The cost of the
+/// plan is then summed in double precision. So the square of the result is within about 1e-14·D² of
 /// W2², which matters only where W2 itself is below 1e-5·D.
 ///
-/// Takes about 100 bytes of memory for a pair of points. Throws std::invalid_argument if the
+/// Takes about 100 bytes of memory per pair of points. Throws std::invalid_argument if the
 /// dimensions differ or as check_measure; std::length_error above kTransportPairs pairs.
 [[nodiscard]] double wasserstein2(const DiscreteMeasure& first, const DiscreteMeasure& second);
 
-/// Up to how many pairs of points with weight `wasserstein2` goes.
+/// The largest number of pairs of points with weight that `wasserstein2` accepts.
 inline constexpr Eigen::Index kTransportPairs = 20'000'000;
 
 /// W2 of two Gaussians, which may be singular (Bures):

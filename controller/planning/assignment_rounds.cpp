@@ -11,33 +11,33 @@ namespace {
 
 // Rounds of "optimise at frozen assignments, then predict with new ones" in one plan.
 constexpr int kAssignmentRounds = 3;
-// The same with the gains among what is optimised.
+// The same when the gains are optimised as well.
 constexpr int kGainRounds = 2;
-// On a warm start the rounds need not be more precise than this, relatively: the next period goes
-// on.
+// Relative tolerance of the rounds on a warm start: the next period continues the optimisation.
 constexpr double kWarmTolerance = 1e-7;
-// The first round of a cold start need be no more precise than this, relatively, as new assignments
-// will change the problem, and the following ones than this share of the last change.
+// Relative tolerance of the first round of a cold start, as new assignments will change the
+// problem; that of the following rounds is this share of the last change.
 constexpr double kColdTolerance = 1e-5;
 constexpr double kShareOfChange = 0.01;
-// What a round must promise of the cost, relatively, to be worth a prediction, warm or cold.
+// Relative decrease of the cost that a round must promise to be worth a prediction, for warm and
+// cold starts.
 constexpr double kWarmSettled = 1e-5;
 constexpr double kColdSettled = 1e-6;
-// The same where the risk is limited: a new certificate moves the limit by more than that.
+// The same with risk limits, where a new certificate shifts the limit by more than that.
 constexpr double kLimitedSettled = 1e-4;
-// Further rounds where a particle is beyond a bound with new assignments, though none was with the
-// old ones. Each asks for as much more room as was lacking.
+// Extra rounds if a particle violates a bound under new assignments, though none did under the old
+// ones. Each tightens the bounds by the violation.
 constexpr int kConstraintRounds = 5;
-// The same where a plan's certificate exceeds a limit.
+// Extra rounds if a plan's certificate exceeds a limit.
 constexpr int kRiskRounds = 3;
-// Minimisations in one round until multipliers have settled, and how far, in logarithms of the
-// risk, from a limit that is asked to be kept by as much more.
+// Most minimisations in one round until the multipliers have converged, and the tolerance of a
+// limit, in log risk; the limits are tightened to make up for it.
 constexpr int kMultiplierRounds = 6;
 constexpr double kRiskTolerance = 0.02;
-// They need be no more precise than this, relatively, as the multipliers change what is minimised.
+// Relative tolerance of these minimisations, as the multipliers change what is minimised.
 constexpr double kMultiplierTolerance = 1e-5;
-// Rounds that minimise the risk itself, and what the cost counts for beside it: that many units of
-// the logarithm for all of it.
+// Rounds that minimise the risk itself, and the weight of the cost beside it: the whole cost counts
+// as this many units of log risk.
 constexpr int kLeastRiskRounds = 2;
 constexpr double kCostBesideRisk = 1e-3;
 
@@ -56,7 +56,7 @@ AssignmentRounds::AssignmentRounds(const models::Dynamics& dynamics,
   }
 }
 
-/// Over the inputs of all stages and `entries` entries of the gains, which are not bounded.
+/// Sets up a search over the inputs of all stages and `entries` unbounded entries of the gains.
 void AssignmentRounds::make_search(Eigen::Index entries, Search& out) {
   const Eigen::Index inputs = Eigen::Index{dynamics_.input_dim()} * settings_.horizon;
   out.problem.lower.setConstant(inputs + entries, -kInfinity);
@@ -101,12 +101,11 @@ void AssignmentRounds::optimise(PlanInProgress& plan) {
     }
   }
   const int rounds = kAssignmentRounds + (plan.evaluated ? 0 : 1);
-  // Constraints are met by rounds that are precise, or else by none; and gains are searched for
-  // about inputs that have converged.
+  // Constraints need precise rounds, and gains are optimised about converged inputs.
   const bool loose = !plan.warm && !evaluator_.constraints() && !gains_;
   tolerance_ = loose ? kColdTolerance : 0.0;
   if (optimise(inputs_, rounds, plan) && gains_) {
-    // What was predicted last may be a candidate that was refused.
+    // The last prediction may be that of a rejected candidate.
     evaluator_.hold(*plan.current);
     (void)optimise(*gains_, kGainRounds, plan);
   }
@@ -115,13 +114,13 @@ void AssignmentRounds::optimise(PlanInProgress& plan) {
   if (plan.current->violation > kConstraintTolerance) {
     plan.status = SolverStatus::kInfeasible;
   } else if (plan.status == SolverStatus::kInfeasible) {
-    // Of a search for something better than the plan that is kept.
+    // The failed search was for something better than the plan that is kept.
     plan.status = SolverStatus::kStalled;
   }
 }
 
-/// Whether the candidate leaves something to be kept by another round, which is then asked for
-/// more. `rounds` grows as far as it may.
+/// Whether the candidate violates something that another round, with tightened constraints, could
+/// keep. Raises `rounds` up to its limit.
 bool AssignmentRounds::asks_for_more(const Plan& candidate, PlanInProgress& plan, int round,
                                      int& rounds) const {
   const int usual = kAssignmentRounds + (plan.evaluated ? 0 : 1);
@@ -132,14 +131,14 @@ bool AssignmentRounds::asks_for_more(const Plan& candidate, PlanInProgress& plan
   }
   RiskConstraint* const risk = evaluator_.risk();
   if (risk == nullptr || candidate.risk.kept || !(candidate.risk.severity > 0.0)) return false;
-  // The surrogate that is held from now on is the candidate's; what it lacked the first time was
-  // for that of another plan.
+  // The held surrogate is now the candidate's. The first shortfall was under another plan's
+  // surrogate, so it does not count.
   if (round > 0) risk->set_margin(risk->margin() + std::clamp(candidate.risk.severity, 0.0, 0.5));
   rounds = std::clamp(round + 2, rounds, std::max(rounds, usual + kRiskRounds));
   return true;
 }
 
-/// Rounds of one search. Returns whether another one may follow.
+/// The rounds of one search. Returns whether another search may follow.
 bool AssignmentRounds::optimise(Search& search, int rounds, PlanInProgress& plan) {
   PlanStopwatch stopwatch;
   const auto may_go_on = [&] {
@@ -172,7 +171,7 @@ bool AssignmentRounds::optimise(Search& search, int rounds, PlanInProgress& plan
   return may_go_on();
 }
 
-/// Makes the candidate the plan of the decision z.
+/// Sets the candidate to the plan for the decision z.
 void AssignmentRounds::predict_candidate(const Eigen::VectorXd& z, PlanInProgress& plan) {
   const Eigen::MatrixXd& known = plan.current->policy.inputs;
   gain_change_ = plan.current->gain_change;
@@ -191,15 +190,15 @@ SolverOptions AssignmentRounds::solver_options(const PlanInProgress& plan) const
   if (aim_ == Aim::kAugmented) options.relative_tolerance = kMultiplierTolerance;
   options.relative_tolerance = std::max(options.relative_tolerance, tolerance_);
   if (plan.deadline != PlanInProgress::Clock::time_point::max()) {
-    // Time for the prediction that belongs to the result.
+    // Leaves time for the prediction of the result.
     options.deadline = plan.deadline - std::chrono::duration_cast<PlanInProgress::Clock::duration>(
                                            evaluator_.prediction_time());
   }
   return options;
 }
 
-/// One run of the solver from search.z; where it takes no constraints and the risk is limited, one
-/// after the other until the multipliers have settled.
+/// One run of the solver from search.z; with risk limits and a solver without constraints, repeated
+/// until the multipliers have converged.
 const SolverResult& AssignmentRounds::minimise(Search& search, PlanInProgress& plan) {
   const SolverResult* result =
       &search.solver->minimise(search.problem, search.z, solver_options(plan));
@@ -215,8 +214,8 @@ const SolverResult& AssignmentRounds::minimise(Search& search, PlanInProgress& p
   return *result;
 }
 
-/// Optimises at the assignments that are held, from the current plan; the result is in search.z.
-/// Returns whether it is worth a prediction: finite, better by more than nothing, and in time.
+/// Optimises at the held assignments, from the current plan; the result is in search.z. Returns
+/// whether it is worth a prediction: finite, in time, and a more than negligible improvement.
 bool AssignmentRounds::run_solver(Search& search, PlanInProgress& plan) {
   const Plan& current = *plan.current;
   search.z.setZero();
@@ -226,7 +225,7 @@ bool AssignmentRounds::run_solver(Search& search, PlanInProgress& plan) {
   plan.status = result.status;
   search.least = aim_ == Aim::kCost ? result.value : evaluator_.cost().evaluate(result.z);
   if (!std::isfinite(result.value)) {
-    // Without time for a single evaluation there is no value, and the plan stands as it is.
+    // If there was no time for a single evaluation, there is no value, and the plan stays as it is.
     plan.failed = plan.evaluated && result.status == SolverStatus::kNumericalTrouble;
     return false;
   }
@@ -252,7 +251,7 @@ void AssignmentRounds::reduce_risk(PlanInProgress& plan) {
     inputs_.solver->forget();
     inputs_.z = plan.current->policy.inputs.reshaped();
     SolverOptions options = solver_options(plan);
-    // Planning proper may have used up its evaluations.
+    // The main optimisation may have used up its evaluations.
     options.max_evaluations = std::max(1, settings_.max_evaluations / 2);
     inputs_.problem.constraints.reset();
     if (solver_entry(settings_.solver).takes_constraints) {

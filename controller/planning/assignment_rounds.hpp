@@ -1,5 +1,5 @@
-// The optimisation of a plan: a solver's run at assignments that are held, then a prediction with
-// new ones, and again, as long as it pays.
+// The optimisation of a plan: a solver run with fixed assignments, then a prediction with new ones,
+// repeated as long as it pays.
 #pragma once
 
 #include <memory>
@@ -17,35 +17,36 @@ namespace qsmpc::controller {
 
 class AssignmentRounds {
  public:
-  /// Refers to all three. Throws std::invalid_argument on an unknown solver.
+  /// Keeps references to all three. Throws std::invalid_argument on an unknown solver.
   AssignmentRounds(const models::Dynamics& dynamics, const PlannerSettings& settings,
                    PlanEvaluator& evaluator);
 
-  /// Makes plan.current the best plan, evaluated with assignments and gains of its own, from what
-  /// it is now, at the assignments that are held: first the inputs are optimised, and then, if
-  /// wanted, the gain with them, so that it never costs more. Trouble and a deadline that has
-  /// passed are said in plan.status and plan.failed. Where the risk is limited, each prediction is
-  /// certified; while a limit is exceeded, it is searched again, three times at most.
+  /// Optimises plan.current, from its present state and the held assignments, into the best plan,
+  /// evaluated with its own assignments and gains: first the inputs and then, if requested, the
+  /// gain together with them, so that the cost never increases. Numerical trouble and a missed
+  /// deadline are reported in plan.status and plan.failed. Where the risk is limited, each
+  /// prediction is certified; while a limit is exceeded, the search is repeated, at most three
+  /// times.
   void optimise(PlanInProgress& plan);
 
-  /// Makes plan.current a plan of less risk, from what it is now, evaluated: the logarithm of the
-  /// plan's risk is minimised, and the cost but to choose among equals. Once the limits are kept,
-  /// `optimise` goes on from there.
+  /// Reduces the risk of plan.current, which must be evaluated: minimises the logarithm of its
+  /// risk, with the cost only as a tie-breaker. Stops once the limits are kept; the next plan's
+  /// `optimise` continues from there.
   void reduce_risk(PlanInProgress& plan);
 
-  /// Makes plan.current the plan that comes to rest soonest.
+  /// Replaces plan.current by the plan that comes to rest soonest.
   void brake(PlanInProgress& plan);
 
  private:
   /// What the solver minimises.
   enum class Aim { kCost, kAugmented, kRisk };
 
-  /// A problem with its solver, and the decision that they work on.
+  /// A problem with its solver and decision vector.
   struct Search {
     OcpProblem problem;
     std::unique_ptr<OcpSolver> solver;
     Eigen::VectorXd z;
-    double least = 0.0;  // that the solver has found in its last run, at the assignments held then
+    double least = 0.0;  // lowest cost of the solver's last run, at the assignments held then
   };
 
   void make_search(Eigen::Index entries, Search& out);
@@ -63,12 +64,12 @@ class AssignmentRounds {
   const PlannerSettings& settings_;
   PlanEvaluator& evaluator_;
   Search inputs_;
-  std::unique_ptr<Search> gains_;  // over inputs and gains, where these are optimised
+  std::unique_ptr<Search> gains_;  // over inputs and gains, if these are optimised
   Eigen::MatrixXd gain_change_;    // of a candidate
-  double tolerance_ = 0.0;         // that the solver's own is raised to
+  double tolerance_ = 0.0;         // lower limit of the solver's own
   Aim aim_ = Aim::kCost;
   AugmentedLagrangian lagrangian_;
-  double cost_share_ = 0.0;  // of the cost in what is minimised for the risk
+  double cost_share_ = 0.0;  // weight of the cost when the risk is minimised
   Eigen::VectorXd risk_gradient_;
 };
 

@@ -6,7 +6,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// A message that is made only where it is needed: a control loop allocates nothing.
+// Builds the message only on failure, so that a control loop allocates nothing.
 void require_belief(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(std::string("belief: ") + message);
 }

@@ -1,5 +1,5 @@
-// Beliefs as particles. A control loop's beliefs differ in their means and seldom in their
-// covariance, so that the points of one covariance are kept and moved.
+// Beliefs as particles. In a control loop the mean of the belief changes and the covariance seldom
+// does, so the points of one covariance are cached and translated.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,13 +13,13 @@ namespace qsmpc::controller {
 
 class BeliefQuantiser {
  public:
-  /// For beliefs of dimension `dim`; budget: points at most.
+  /// For beliefs of dimension `dim`; budget: largest number of points.
   BeliefQuantiser(Eigen::Index dim, int budget, QuantiserKind kind)
       : dim_(dim), budget_(budget), kind_(kind) {}
 
-  /// Writes the quantisation of `belief` to `out`, whose storage is reused. Allocates only where
-  /// the covariance is another one than before. Throws std::invalid_argument on a belief that is of
-  /// another dimension or not finite, and as `quantise`.
+  /// Writes the quantisation of `belief` to `out`, whose storage is reused. Allocates only when the
+  /// covariance has changed. Throws std::invalid_argument on a belief of another dimension or with
+  /// non-finite entries, and as `quantise` does.
   void quantise(const Gaussian& belief, GaussianQuantisation& out);
 
  private:

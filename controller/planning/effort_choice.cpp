@@ -6,14 +6,14 @@
 namespace qsmpc::controller {
 namespace {
 
-// The ladder: efforts from 10^-2 to 10^3.5, two a decade.
+// The ladder: efforts from 10^-2 to 10^3.5, two per decade.
 constexpr int kStepsPerDecade = 2;
 constexpr int kLowestStep = -4;
 constexpr int kHighestStep = 7;
-// What another effort must lower the logarithm of the risk by, so that gains do not change to and
-// fro.
+// Least decrease of the log risk that justifies another effort, so that gains do not switch back
+// and forth.
 constexpr double kWorthIt = 0.05;
-// A plan whose risk is below this share of its limits is not held back by them.
+// A plan whose risk is below this share of its limits is not constrained by them.
 constexpr double kNearLimit = 0.05;
 
 double effort_of(int step) { return std::pow(10.0, static_cast<double>(step) / kStepsPerDecade); }
@@ -49,7 +49,7 @@ bool EffortChoice::follow(const Plan& plan) {
   return upwards_ ? try_steps(plan, step_, step_ + 1) : try_steps(plan, step_ - 1, step_);
 }
 
-/// How far the plan's inputs exceed their limits with gains of this effort, as a logarithm.
+/// Excess of the plan's inputs over their limits with gains of this effort, as a logarithm.
 double EffortChoice::excess_with(const Plan& plan, int step) {
   evaluator_.policies().set_effort(effort_of(step));
   return evaluator_.excess_of(plan, policy_);

@@ -1,6 +1,6 @@
-// How much effort feedback may take, chosen by what is certified. Stiff gains meet the bounds of
-// the input, of which certificates make the worst; gentle ones let the noise spread. Between them
-// is the effort for which the same inputs are certified to the least risk.
+// Chooses the effort of the feedback by certified risk. Stiff gains saturate the inputs, for which
+// certificates assume the worst; gentle gains let the noise spread. In between lies the effort for
+// which the same inputs have the lowest certified risk.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,24 +12,24 @@ namespace qsmpc::controller {
 
 class EffortChoice {
  public:
-  /// Refers to both.
+  /// Keeps references to both.
   EffortChoice(const PlannerSettings& settings, PlanEvaluator& evaluator);
 
-  /// Whether there is anything to choose: gains from LQR whose effort is not given, and limits.
+  /// Whether there is a choice: LQR gains without a given effort, and risk limits.
   [[nodiscard]] bool applies() const;
 
-  /// Back to the effort of the cost itself.
+  /// Back to an effort of 1, that of the cost itself.
   void reset();
 
-  /// Certifies the inputs of `plan` with efforts of the whole ladder, and makes the best one that
-  /// of all gains from now on. Returns whether it is another one; `plan` keeps its gains.
+  /// Certifies the inputs of `plan` with every effort of the ladder, and uses the best one for all
+  /// gains from now on. Returns whether the effort changed; `plan` keeps its gains.
   bool search(const Plan& plan);
 
-  /// The same with both neighbours of the effort at hand alone.
+  /// The same, but only with both neighbours of the present effort.
   bool search_nearby(const Plan& plan);
 
-  /// The same with one neighbour of the effort at hand, the upper and the lower in turn; with none
-  /// where the plan, whose gains are of the effort at hand, stays far below its limits.
+  /// The same with one neighbour of the present effort, alternating between the upper and the
+  /// lower; with none if the plan, whose gains have the present effort, is far below its limits.
   bool follow(const Plan& plan);
 
  private:
@@ -38,7 +38,7 @@ class EffortChoice {
 
   const PlannerSettings& settings_;
   PlanEvaluator& evaluator_;
-  int step_ = 0;         // of the ladder, 0 for an effort of 1
+  int step_ = 0;         // index on the ladder, 0 for an effort of 1
   bool upwards_ = true;  // which neighbour was tried last
   Policy policy_;
 };

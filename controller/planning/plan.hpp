@@ -1,4 +1,4 @@
-// A plan: the policy over the horizon, and what is predicted and expected of it.
+// A plan: the policy over the horizon, with its prediction and expected cost.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,23 +27,23 @@ struct Plan {
   GaussianQuantisation belief;  ///< of stage 0
   Prediction prediction;        ///< under `policy`, with its own assignments
   CostParts cost;               ///< of `prediction`
-  /// Of the solver's last run; kDeadline where the time was up, this being the best so far.
+  /// Of the solver's last run; kDeadline: the time ran out, and this is the best so far.
   SolverStatus status = SolverStatus::kConverged;
   PlanRisk risk;           ///< of `policy`, where there are limits
-  double violation = 0.0;  ///< how far a particle is beyond the bounds at most, where the solver
-                           ///< takes them as constraints; 0 elsewhere
+  double violation = 0.0;  ///< largest distance of a particle beyond the bounds, if the
+                           ///< solver takes them as constraints; else 0
   int evaluations = 0;     ///< of cost and gradient
   bool warm = false;       ///< the previous plan was the first guess
-  bool fallback = false;   ///< nothing finite came out; this is the shifted previous plan
+  bool fallback = false;   ///< no finite result; this is the shifted previous plan
   PlanTiming timing;
 };
 
-/// How far a particle may be beyond a bound (m, or the state's unit) and still count as within.
+/// Tolerance within which a particle beyond a bound counts as inside (m, or the state's unit).
 inline constexpr double kConstraintTolerance = 1e-6;
 
-/// Whether `plan` is better than `other`: feasible before infeasible, then the cheaper; of two that
-/// are infeasible the nearer, by the bounds first and then by the risk. Anything is better than a
-/// cost that is not finite.
+/// Whether `plan` is better than `other`: feasible before infeasible, then the cheaper; of two
+/// infeasible plans, the one with the smaller violation of the bounds, then of the risk limits.
+/// Anything is better than a non-finite cost.
 [[nodiscard]] bool better(const Plan& plan, const Plan& other);
 
 }  // namespace qsmpc::controller

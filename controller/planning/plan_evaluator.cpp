@@ -10,7 +10,7 @@
 namespace qsmpc::controller {
 namespace {
 
-/// Of the bounds, nothing where the solver takes them as constraints.
+/// The penalties without that of the bounds if the solver takes these as constraints.
 Penalty penalty_in_cost(const PlannerSettings& settings) {
   Penalty penalty = settings.penalty;
   if (solver_entry(settings.solver).takes_constraints) penalty.box = 0.0;

@@ -1,4 +1,4 @@
-// One plan in the making, as the steps of planning hand it on.
+// One plan in the making, as passed between the steps of planning.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@
 
 namespace qsmpc::controller {
 
-/// Adds up how long stretches of planning took.
+/// Adds up the durations of parts of planning.
 class PlanStopwatch {
  public:
   /// Adds the milliseconds since construction or the last call to `total`.
@@ -27,11 +27,11 @@ struct PlanInProgress {
   using Clock = std::chrono::steady_clock;
 
   Plan* current = nullptr;    ///< the best so far
-  Plan* candidate = nullptr;  ///< room for what may replace it
+  Plan* candidate = nullptr;  ///< scratch plan that may replace it
   Clock::time_point deadline = Clock::time_point::max();
-  bool warm = false;       ///< whether it goes on from the last plan
-  bool evaluated = false;  ///< whether `current` has a prediction of its own
-  bool failed = false;     ///< whether a solver found nothing finite about `current`
+  bool warm = false;       ///< whether it continues the last plan
+  bool evaluated = false;  ///< whether `current` has its own prediction
+  bool failed = false;     ///< whether a solver found no finite cost near `current`
   SolverStatus status = SolverStatus::kConverged;  ///< of the last solver that ran
   int evaluations = 0;
   PlanTiming timing{};
@@ -40,7 +40,7 @@ struct PlanInProgress {
     return status == SolverStatus::kDeadline || status == SolverStatus::kNumericalTrouble;
   }
   [[nodiscard]] bool late() const { return Clock::now() >= deadline; }
-  /// The candidate is the plan from now on.
+  /// Makes the candidate the current plan.
   void accept_candidate() {
     std::swap(current, candidate);
     evaluated = true;

@@ -12,7 +12,7 @@ namespace {
 
 using Clock = PlanInProgress::Clock;
 
-// A message that is made only where it is needed: planning allocates nothing.
+// Builds the message only on failure, so that planning allocates nothing.
 void require_plannable(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(std::string("planner: ") + message);
 }
@@ -78,7 +78,7 @@ const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
   Plan& made = *plan.current;
   made.fallback = (plan.failed || !std::isfinite(made.cost.total())) && last_ != nullptr;
   if (made.fallback) fall_back(made);
-  // A place in which no plan has been finished yet is made ready at once, not in some later period.
+  // Also sets the belief of plans not used yet, so that no later period has to allocate.
   for (Plan& room : plans_) {
     if (&room == &made || room.belief.measure.size() == 0) room.belief = evaluator_.belief();
   }
@@ -91,8 +91,8 @@ const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
   return made;
 }
 
-/// Where a limit of the risk is exceeded: looks for a plan within it once more, and else does what
-/// the settings say. Then notes how the plan goes on.
+/// If a risk limit is exceeded: searches once more for a plan within it and, failing that, applies
+/// the fallback of the settings. Then records the inputs to continue from.
 void Planner::settle(PlanInProgress& plan, const Gaussian& belief, const PlanRequest& request) {
   if (kept_inputs_.size() > 0) shift_inputs(Eigen::MatrixXd(kept_inputs_), kept_inputs_);
   const bool usable = !plan.failed && std::isfinite(plan.current->cost.total());
@@ -115,19 +115,19 @@ void Planner::settle(PlanInProgress& plan, const Gaussian& belief, const PlanReq
     if (!plan.stopped()) plan.status = SolverStatus::kRiskExceeded;
   } else {
     kept_inputs_ = plan.current->policy.inputs;
-    // For the next period: this plan stays as it was certified.
+    // For the next period; this plan keeps its certified gains.
     if (usable && !plan.late()) (void)effort_.follow(*plan.current);
   }
 }
 
-/// The effort of the gains for a plan that starts from nothing: of the first, any; of a later one,
-/// which goes another way at the same weights and noise, one that is near. Returns whether it is
-/// another one.
+/// Chooses the effort of the gains on a cold start: for the first plan, from the whole ladder; for
+/// a later one, which goes another way under the same weights and noise, among the neighbours.
+/// Returns whether it changed.
 bool Planner::begin_effort(const Plan& plan) {
   return last_ == nullptr ? effort_.search(plan) : effort_.search_nearby(plan);
 }
 
-/// Gives the current plan the gains for which its inputs are certified to less.
+/// Gives the current plan the gains for which its inputs have a lower certificate.
 void Planner::choose_effort(PlanInProgress& plan) {
   PlanStopwatch stopwatch;
   if (effort_.follow(*plan.current)) {
@@ -139,7 +139,7 @@ void Planner::choose_effort(PlanInProgress& plan) {
   stopwatch.add_to(plan.timing.propagate);
 }
 
-/// Makes what the last plan within its limits has come to the current one, where it is better or in
+/// Replaces the current plan by the tail of the last one within its limits, if that is better or in
 /// any case.
 void Planner::try_tail(PlanInProgress& plan, bool in_any_case) {
   PlanStopwatch stopwatch;
@@ -149,8 +149,8 @@ void Planner::try_tail(PlanInProgress& plan, bool in_any_case) {
   stopwatch.add_to(plan.timing.propagate);
 }
 
-/// Where a limit is exceeded, makes the plan for the model alone the current one, certified with
-/// the error.
+/// If a limit is exceeded, replaces the current plan by that for the model without its error,
+/// certified with the error.
 void Planner::plan_without_error(PlanInProgress& plan, const Gaussian& belief,
                                  const PlanRequest& request) {
   const bool wanted = !plan.failed && !plan.current->risk.kept && !plan.late();
@@ -172,7 +172,7 @@ void Planner::plan_without_error(PlanInProgress& plan, const Gaussian& belief,
   errorless_goes_on_ = wanted;
 }
 
-/// Nothing usable came out: goes on with what was planned before.
+/// Continues the previous plan after a failure.
 void Planner::fall_back(Plan& plan) {
   Eigen::MatrixXd inputs;
   shift_inputs(last_->policy.inputs, inputs);
@@ -185,7 +185,7 @@ const Plan& Planner::prescribe(const Gaussian& belief,
   const InputBounds& bounds = settings_.bounds;
   require_plannable(inputs.rows() == dynamics_.input_dim() && inputs.cols() == settings_.horizon,
                     "the inputs must be a matrix of inputs x stages");
-  // A comparison with NaN is false, so these are refused as well.
+  // Comparisons with NaN are false, so NaN is rejected as well.
   require_plannable(((inputs.colwise() - bounds.lower).array() >= 0.0).all() &&
                         ((inputs.colwise() - bounds.upper).array() <= 0.0).all(),
                     "the inputs must be within their bounds");
@@ -198,7 +198,7 @@ const Plan& Planner::prescribe(const Gaussian& belief,
   return prescribed_;
 }
 
-/// A plan about which no more is known than the belief.
+/// Starts a prescribed plan, of which only the belief is set.
 void Planner::begin_prescribed(const Gaussian& belief, std::optional<double> progress) {
   PlanStopwatch stopwatch;
   prescribed_ = {};

@@ -4,10 +4,10 @@
 //   const Plan& plan = planner.plan(belief);
 //   Eigen::VectorXd u = policy_input(plan.policy, 0, measured_state);
 //
-// A planner remembers its last plan, from which the next one is started; apart from that, from the
-// timings, and from a deadline if it has one, a plan depends on nothing but settings and beliefs.
-// Once it has planned for beliefs of a kind, planning allocates nothing (but for what solvers of
-// other people's, the slower propagators and, where the risk is limited, certificates do).
+// A planner starts each plan from its last one. Apart from that, timings and a deadline if there is
+// one, a plan depends only on settings and beliefs. After the first plans for beliefs of a kind,
+// planning allocates nothing (except in third-party solvers, the slower propagators and, with risk
+// limits, certificates).
 #pragma once
 
 #include <array>
@@ -29,22 +29,22 @@
 
 namespace qsmpc::controller {
 
-/// What a plan is to be made for, beside the belief.
+/// The inputs of a plan beside the belief.
 struct PlanRequest {
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
-  Eigen::Index period = 0;  ///< of the drive, which decides what the model error is
-  /// Limits of this plan's risk beside those of the settings; the lower one counts.
+  Eigen::Index period = 0;  ///< of the drive; determines the model error
+  /// Risk limits of this plan beside those of the settings; the lower one applies.
   RiskLimits limits{};
-  /// Arc length of the settings' path that the belief is at, m; without it, where its mean is
-  /// nearest. Of waypoints how many have been passed; without it, none. Nothing where there are
-  /// neither.
+  /// Progress of the belief. On the settings' path: arc length, m; if empty, at the place nearest
+  /// to its mean. With waypoints: how many have been passed; if empty, none. Leave it empty without
+  /// either.
   std::optional<double> progress{};
 };
 
 class Planner {
  public:
-  /// `dynamics` must outlive the planner. Throws std::invalid_argument on settings that make no
-  /// sense: sizes, non-finite entries, unknown names, a horizon below 1, a guide without a plane.
+  /// `dynamics` must outlive the planner. Throws std::invalid_argument on invalid settings: wrong
+  /// sizes, non-finite entries, unknown names, a horizon below 1, a guide without a plane.
   Planner(const models::Dynamics& dynamics, PlannerSettings settings);
   Planner(const Planner&) = delete;
   Planner& operator=(const Planner&) = delete;
@@ -53,26 +53,25 @@ class Planner {
   ~Planner() = default;
 
   /// Plans for `belief` (state_dim; checked, throws std::invalid_argument), until the request's
-  /// deadline or that of the settings, whichever is earlier. Numerical trouble, a deadline that has
-  /// passed and a limit of the risk that no plan was found for are statuses of the plan, never
-  /// exceptions; after a failure the next plan is a cold start. The plan stays valid until the next
-  /// call.
+  /// deadline or that of the settings, whichever is earlier. Numerical trouble, a missed deadline
+  /// and a risk limit that no plan could keep are statuses of the plan, never exceptions; after a
+  /// failure the next plan is a cold start. The plan stays valid until the next call.
   const Plan& plan(const Gaussian& belief, const PlanRequest& request = {});
 
-  /// The plan whose nominal inputs are `inputs` (input_dim x horizon): predicted and evaluated for
-  /// `belief`, with the gains that belong to them, and not optimised. The plan stays valid until
-  /// the next call, which does not start from it. Throws std::invalid_argument as `plan`, and if
-  /// the inputs are of another size, not finite or not within the bounds.
+  /// The plan with the nominal inputs `inputs` (input_dim x horizon): predicted and evaluated for
+  /// `belief`, with the gains for these inputs, but not optimised. The plan stays valid until the
+  /// next call, which does not start from it. Throws std::invalid_argument as `plan` does, and on
+  /// inputs of another size, not finite or not within the bounds.
   const Plan& prescribe(const Gaussian& belief, const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
-  /// The policy of `plan`, another planner's for the same belief, progress (PlanRequest) and
-  /// system, as this one predicts and evaluates it. It stays valid as that of `prescribe`. Throws
-  /// std::invalid_argument as `plan`.
+  /// Predicts and evaluates the policy of `plan`, made by another planner for the same belief,
+  /// progress (PlanRequest) and system. The result stays valid as for `prescribe`. Throws
+  /// std::invalid_argument as `plan` does.
   const Plan& price(const Gaussian& belief, const Plan& plan, std::optional<double> progress = {});
 
   /// Quantises a Gaussian of this covariance (state_dim x state_dim), so that the quantiser's slow
-  /// first call for beliefs like it is over before a control loop starts. No plan depends on it.
-  /// Throws std::invalid_argument as `plan`.
+  /// first call for such beliefs happens before a control loop starts. It changes no plan. Throws
+  /// std::invalid_argument as `plan` does.
   void prepare(const Eigen::MatrixXd& covariance);
 
   /// Forgets the last plan: the next one is a cold start.
@@ -84,8 +83,8 @@ class Planner {
     if (errorless_) errorless_->reset();
   }
 
-  /// How far it is from `state` to the target the way that the guide knows, or from
-  /// `progress` on along the path or over the waypoints, m; empty without any of them.
+  /// The length of the way from `state` to the target, m: along the guide's way, or from `progress`
+  /// on along the path or over the waypoints; empty without any of these.
   [[nodiscard]] std::optional<double> way_to_target(const Eigen::VectorXd& state,
                                                     std::optional<double> progress = {});
 
@@ -109,16 +108,16 @@ class Planner {
   StartChoice start_;
   AssignmentRounds rounds_;
   EffortChoice effort_;
-  std::array<Plan, 3> plans_;    // the last one, and room for the next and what may replace it
-  Plan* last_ = nullptr;         // the plan last made, null for a cold start
+  std::array<Plan, 3> plans_;    // the last one, the next, and its candidate
+  Plan* last_ = nullptr;         // the last plan, null for a cold start
   bool failed_ = false;          // the last plan fell back, or its solver met numerical trouble
-  Eigen::MatrixXd kept_inputs_;  // of the last plan within its limits, as they go on now; or empty
+  Eigen::MatrixXd kept_inputs_;  // of the last plan within its limits, shifted to now; or empty
   Plan prescribed_;
-  std::unique_ptr<Planner> errorless_;  // as this one, for the model alone; only for kModel
-  bool errorless_goes_on_ = false;      // whether it made the last plan
+  std::unique_ptr<Planner> errorless_;  // as this one, but without the model error; only for kModel
+  bool errorless_goes_on_ = false;      // whether it was run for the last plan
 };
 
-/// What `plan`, which `planner` made for `belief`, predicts; refers to all three.
+/// The motion predicted by `plan`, which `planner` made for `belief`; refers to all three.
 [[nodiscard]] PredictedMotion motion_of(const Planner& planner, const Gaussian& belief,
                                         const Plan& plan);
 

@@ -8,7 +8,7 @@
 
 namespace qsmpc::controller {
 
-/// Throws std::invalid_argument as make_propagator.
+/// Throws std::invalid_argument as make_propagator does.
 [[nodiscard]] inline std::unique_ptr<Propagator> planner_propagator(
     const PlannerSettings& settings) {
   return make_propagator(settings.propagator,

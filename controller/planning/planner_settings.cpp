@@ -7,7 +7,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// Relative; what rounding leaves in a symmetric matrix that was computed.
+// Relative; allows for the rounding of a computed symmetric matrix.
 constexpr double kSymmetryTolerance = 1e-12;
 
 void require(bool holds, const std::string& message) {
@@ -20,7 +20,7 @@ void require_square(const Eigen::MatrixXd& matrix, Eigen::Index size, const std:
       name + " must be a finite matrix of " + std::to_string(size) + " x " + std::to_string(size));
 }
 
-/// The gradient of xᵀWx is written as 2Wx.
+/// Needed because the gradient of xᵀWx is taken as 2Wx.
 void require_symmetric(const Eigen::MatrixXd& matrix, const std::string& name) {
   require(matrix.isApprox(matrix.transpose(), kSymmetryTolerance), name + " must be symmetric");
 }

@@ -1,4 +1,4 @@
-// What a planner is made from.
+// Settings of a planner.
 #pragma once
 
 #include <limits>
@@ -28,12 +28,12 @@ struct PlannerSettings {
   int horizon = 8;
   bool closed_loop = true;
   std::optional<Eigen::MatrixXd> feedback_gain;  ///< input_dim x state_dim; else from LQR
-  /// Closed loop with gains from LQR: how much more the input weighs there than in the cost, > 0.
-  /// Gentler gains meet the bounds of the input less often, of which certificates make the worst.
-  /// Unless given, 1, and with limits of the risk what the certificates are least for.
+  /// Closed loop with gains from LQR: factor on the input weight there relative to the cost, > 0.
+  /// Gentler gains saturate the inputs less often, for which certificates assume the worst.
+  /// Default: 1 or, with risk limits, the value that minimises the certificates.
   std::optional<double> feedback_effort;
-  /// Closed loop: whether a matrix that is added to the gains of all stages is optimised along with
-  /// the inputs.
+  /// Closed loop: whether to optimise, along with the inputs, a matrix added to the gains of all
+  /// stages.
   bool optimise_gain = false;
   std::string solver = "lbfgs";
   std::string input_bounding =
@@ -44,34 +44,35 @@ struct PlannerSettings {
   int noise_points = 100;
   int compressed_points = 100;
   int max_evaluations = 100;  ///< of the cost, in one plan
-  /// Of one plan, s, > 0. A plan takes at least one prediction, however long that is.
+  /// Of one plan, s, > 0. A plan makes at least one prediction, however long that takes.
   double deadline = std::numeric_limits<double>::infinity();
   Eigen::MatrixXd noise_covariance;  ///< state_dim x state_dim
   QuadraticCost cost;
-  /// What the target of the cost moves along, in place of cost.target: then what the drive is to.
+  /// Path of a moving target, which replaces cost.target in the cost; the drive still ends at
+  /// cost.target.
   std::optional<PathTarget> path{};
-  /// Or what is driven to before it, in order; the last is then cost.target.
+  /// Alternatively, waypoints to pass in order; the last one is then cost.target.
   std::optional<Waypoints> waypoints{};
-  /// Where the solver takes constraints, it keeps every particle within the bounds, and `box` is
-  /// not used.
+  /// If the solver takes constraints, it keeps every particle within the bounds, and `box` is not
+  /// used.
   Penalty penalty;
   SafeSet safe_set;
   RiskLimits risk;  ///< of every plan's certificates
   RiskOtherwise otherwise = RiskOtherwise::kLeastRisk;
-  /// How far the plant is from the model; what is certified then holds for the plant.
+  /// Error of the model with respect to the plant; certificates then hold for the plant.
   std::optional<ModelError> model_error;
   InputBounds bounds;
-  /// Whether plans aim along the cheapest way round obstacles (guide/guide.hpp), and not straight
+  /// Whether plans aim along the cheapest way round obstacles (guide/guide.hpp) instead of straight
   /// at the target.
   bool guide = false;
-  Executor run = run_in_turn;  ///< what loops over many particles go through
+  Executor run = run_in_turn;  ///< executor of loops over many particles
 };
 
-/// Throws std::invalid_argument on settings that make no sense for a system of these dimensions:
-/// sizes, non-finite entries, a horizon below 1. Names are checked by those who know them.
+/// Throws std::invalid_argument on invalid settings for a system of these dimensions: wrong sizes,
+/// non-finite entries, a horizon below 1. Names are checked where they are looked up.
 void check_planner_settings(const PlannerSettings& settings, int state_dim, int input_dim);
 
-/// Indices of the states that are speeds, in m/s: what braking makes 0.
+/// Indices of the states that are speeds, in m/s, which braking drives to 0.
 [[nodiscard]] std::vector<int> speeds_of(const models::Dynamics& dynamics);
 
 }  // namespace qsmpc::controller

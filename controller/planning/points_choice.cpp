@@ -16,12 +16,12 @@
 namespace qsmpc::controller {
 namespace {
 
-// The ladder. Between two numbers hardly anything changes.
+// Ratio of successive numbers of points; between two of them hardly anything changes.
 constexpr double kLadderStep = 1.25;
-// Of one period's noise, by which a state is elsewhere.
+// Standard deviations of one period's noise beyond which a state counts as having moved.
 constexpr double kDeviations = 3.0;
 
-/// What is planned from, and the plan with the most points.
+/// A start of planning, and its plan with the most points.
 struct Place {
   Gaussian belief;
   std::optional<double> progress;  // as in PlanRequest
@@ -47,7 +47,7 @@ class PointsComparison {
   }
 
   [[nodiscard]] PointsChoice choose() {
-    if (places_.empty()) return choice_of(settings_, 0.0);  // nothing tells what fewer would do
+    if (places_.empty()) return choice_of(settings_, 0.0);  // no basis for a comparison
     const int most = std::max(settings_.state_points, settings_.compressed_points);
     for (int points = fewest(); points < most;
          points = static_cast<int>(std::ceil(points * kLadderStep))) {
@@ -59,7 +59,7 @@ class PointsComparison {
   }
 
  private:
-  /// As many as the unscented transform has: with fewer, some coordinate does not vary at all.
+  /// As many as the unscented transform uses: with fewer, some coordinate does not vary at all.
   [[nodiscard]] int fewest() const { return 2 * dynamics_.state_dim() + 1; }
 
   static PlannerSettings without_deadline(PlannerSettings settings) {
@@ -74,7 +74,8 @@ class PointsComparison {
             .places = static_cast<int>(places_.size())};
   }
 
-  /// Follows plans with the most points from end to end, and looks aside at each.
+  /// Follows plans with the most points from end to end, and adds a place nearer to the unsafe set
+  /// at each.
   void find_places(Gaussian belief) {
     std::optional<double> progress = progress_at(belief.mean, {});
     for (int n = 0; n < search_.stretches; ++n) {
@@ -96,12 +97,12 @@ class PointsComparison {
                           before);
   }
 
-  /// A belief in the course of a drive.
+  /// A belief as it arises during a drive.
   [[nodiscard]] Gaussian later(const Eigen::VectorXd& mean) const {
     return {.mean = mean, .covariance = settings_.noise_covariance};
   }
 
-  /// Plans with the most points. Returns whether that can be compared.
+  /// Plans with the most points, and adds the place if the plan is finite. Returns whether it did.
   bool add_place(const Gaussian& belief, std::optional<double> progress) {
     judge_.reset();
     const Plan& plan = judge_.plan(belief, {.progress = progress});
@@ -110,7 +111,7 @@ class PointsComparison {
     return true;
   }
 
-  /// The safe point that is nearest to the unsafe set, where there is any.
+  /// The safe point nearest to the unsafe set, if any.
   [[nodiscard]] std::optional<Eigen::VectorXd> nearest_to_unsafe(
       const DiscreteMeasure& measure) const {
     std::optional<Eigen::VectorXd> nearest;
@@ -124,14 +125,13 @@ class PointsComparison {
     return nearest;
   }
 
-  /// Whether one period's noise moves the state as far as that: a plan that stays where it is.
+  /// Whether the displacement is within one period's noise, i.e. the plan stays in place.
   [[nodiscard]] bool is_noise(const Eigen::VectorXd& way) const {
     const Eigen::ArrayXd deviations = settings_.noise_covariance.diagonal().array().sqrt();
     return (way.array().abs() <= kDeviations * deviations).all();
   }
 
-  /// How far `fewer` points mislead at the place where it is the most; ends early where that is too
-  /// far.
+  /// The gap of the settings `fewer` at the worst place; stops early once it exceeds the tolerance.
   double worst_gap(const PlannerSettings& fewer) {
     Planner planner(dynamics_, fewer);
     double worst = -kInfinity;
@@ -142,8 +142,8 @@ class PointsComparison {
     return worst;
   }
 
-  /// By how much `planner` thinks its own plan better, beside the one with the most points, than it
-  /// is; infinite where that cannot be told.
+  /// By how much `planner` overestimates the advantage of its own plan over the one with the most
+  /// points, relative to the latter's cost; infinite if undefined.
   double gap_at(const Place& place, Planner& planner) {
     planner.reset();
     const Plan& plan = planner.plan(place.belief, {.progress = place.progress});
@@ -152,7 +152,7 @@ class PointsComparison {
     if (plan.risk.kept && !judged.risk.kept) return kInfinity;
     const double best = place.plan.cost.total();
     const double best_seen = planner.price(place.belief, place.plan, place.progress).cost.total();
-    // No cost is below 0, and only that of a drive without noise that is over is 0.
+    // Costs are at least 0, and 0 only at the end of a drive without noise.
     const double gap = ((judged.cost.total() - best) - (own - best_seen)) /
                        std::max(best, std::numeric_limits<double>::min());
     return std::isfinite(gap) ? gap : kInfinity;

@@ -1,10 +1,10 @@
-// How many points a planner needs: as few as keep what its plans cost within a tolerance.
+// How many points a planner needs: as few as keep the cost of its plans within a tolerance.
 //
 //   PlannerSettings settings = …;               // with the most that it may have
 //   choose_points(*car, belief, {.tolerance = 1e-3}, settings).apply_to(settings);
 //
-// Fewer points take less time: predictions, and every evaluation of a solver, take time in
-// proportion to their number.
+// Fewer points take less time: the time of predictions and of each solver evaluation is
+// proportional to their number.
 #pragma once
 
 #include "controller/measure/measures.hpp"
@@ -15,22 +15,22 @@
 
 namespace qsmpc::controller {
 
-/// What is asked for.
+/// The request.
 struct PointsSearch {
-  /// What plans may cost more for having fewer points, relative, > 0.
+  /// Relative increase in cost that is tolerated for fewer points, > 0.
   double tolerance = 1e-3;
-  /// Of the way to the target, a horizon each, that are looked at at most, >= 1.
+  /// Largest number of stretches of the way to the target, one horizon each, to examine, >= 1.
   int stretches = 8;
 };
 
-/// What was found.
+/// The result.
 struct PointsChoice {
   int state_points = 0;       ///< of the belief
   int compressed_points = 0;  ///< kept after each step of the prediction
-  /// What plans cost more with them, relative, at the place where it is the most: not above the
-  /// tolerance; below 0 where these points are misleading nowhere; 0 of all points.
+  /// Relative increase in cost with these points at the worst place: at most the tolerance;
+  /// negative if these points mislead nowhere; 0 if all points are kept.
   double gap = 0.0;
-  int places = 0;  ///< that were compared; without any, all points are kept
+  int places = 0;  ///< number compared; with none, all points are kept
 
   /// Puts the numbers into `settings`.
   void apply_to(PlannerSettings& settings) const {
@@ -39,22 +39,22 @@ struct PointsChoice {
   }
 };
 
-/// Plans with numbers of points from 2 state_dim + 1 upwards, and returns the lowest that misleads
-/// no plan by more than the tolerance; those of `settings` are the most. Plans are compared from
-/// `belief` (state_dim) and from places on the way to the target, each at the nominal end of the
-/// plan before, with the covariance of one period's noise, until a plan stays where it is; and from
-/// the point at the end of each of these plans that is nearest to the unsafe set, where the noise
-/// may well take the state. Each is a first plan.
+/// Plans with increasing numbers of points, from 2 state_dim + 1 up to those of `settings`, and
+/// returns the lowest numbers that mislead no plan by more than the tolerance. Plans are compared
+/// from `belief` (state_dim); from places on the way to the target, each at the nominal end of the
+/// plan before, with the covariance of one period's noise, until a plan stays in place; and, for
+/// each of these plans, from its final point nearest to the unsafe set, where the noise may well
+/// take the state. Each plan is a cold start.
 ///
-/// With J_n what the planner with n points predicts, N the most, and π_n and π_N the plans of the
-/// two, J_N(π_n) − J_N(π_N) = [J_n(π_n) − J_n(π_N)] + [(J_N − J_n)(π_n) − (J_N − J_n)(π_N)]. The
-/// first bracket is the solver's: not above 0 where it finds the best plan, and else as much a
-/// matter of luck with many points as with few. The second is what the points mislead by, and what
-/// is held against the tolerance. Where the risk is limited, a plan that keeps the limits by n
-/// points has to keep them by N.
+/// Let J_n be the cost that a planner with n points predicts, N the most points, and π_n and π_N
+/// the plans of the two. Then J_N(π_n) − J_N(π_N) = [J_n(π_n) − J_n(π_N)] + [(J_N − J_n)(π_n) −
+/// (J_N − J_n)(π_N)]. The first bracket is due to the solver: at most 0 if it finds the best plan,
+/// and otherwise as much a matter of luck with many points as with few. The second is the error due
+/// to the points, and is compared with the tolerance. With risk limits, a plan that keeps them with
+/// n points must also keep them with N.
 ///
-/// Depends on nothing but its arguments; deadlines do not count. Throws std::invalid_argument as
-/// Planner, and on a search that makes no sense.
+/// Depends only on its arguments; deadlines are ignored. Throws std::invalid_argument as Planner
+/// does, and on an invalid search.
 [[nodiscard]] PointsChoice choose_points(const models::Dynamics& dynamics, const Gaussian& belief,
                                          const PointsSearch& search,
                                          const PlannerSettings& settings);

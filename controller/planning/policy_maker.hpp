@@ -1,4 +1,4 @@
-// Policies about given nominal inputs, with the gains that the settings ask for.
+// Policies about given nominal inputs, with the gains defined by the settings.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@ namespace qsmpc::controller {
 
 class PolicyMaker {
  public:
-  /// Refers to both.
+  /// Keeps references to both.
   PolicyMaker(const models::Dynamics& dynamics, const PlannerSettings& settings);
 
   /// The policy about the noise-free trajectory from `start` (state_dim) under `inputs` (input_dim
@@ -21,7 +21,7 @@ class PolicyMaker {
             const Eigen::Ref<const Eigen::MatrixXd>& inputs, const Eigen::MatrixXd& gain_change,
             Policy& out);
 
-  /// How much more the input weighs in the LQR of the gains than in the cost, from now on; > 0.
+  /// Sets the factor on the input weight in the LQR of the gains, relative to the cost; > 0.
   void set_effort(double effort);
 
  private:

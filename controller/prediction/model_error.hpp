@@ -1,11 +1,11 @@
-// How far a plant is from the model: what is known of e in x⁺ = f(x, u) + e + w, w the model's
+// The error of the model of a plant: what is known about e in x⁺ = f(x, u) + e + w, w the model's
 // noise.
 //
-// e may depend in any way on everything up to the moment before w comes in, but not on w, which is
-// independent of that past. Of e less a known offset the norms are bounded coordinate by
-// coordinate: in the first periods of a drive, while what is at rest in the plant comes up, by
-// their own, and the same at every period after them. Certificates that are given them hold for the
-// plant: docs/theory/surrogate.md, section 7.
+// e may depend in any way on everything before w enters, but not on w, which is independent of that
+// past. The norms of e less a known offset are bounded coordinate by coordinate: the first periods
+// of a drive, during start-up transients of the plant, have bounds of their own, and all later
+// periods share the same ones. Certificates computed with these bounds hold for the plant:
+// docs/theory/surrogate.md, section 7.
 #pragma once
 
 #include <optional>
@@ -24,32 +24,32 @@ struct ModelError {
   Eigen::MatrixXd covariance;        ///< n x n, information only; empty where unknown
   Eigen::VectorXd root_mean_square;  ///< n, bounds √E(e − m)_i², in the states' units; finite
   HigherNorms higher;  ///< n each, bounds (E|(e − m)_i|^p)^{1/p}; infinite where unknown
-  /// What bounds √E|e|² in place of √Σ (|m_i| + root_mean_square_i)².
+  /// If set, bounds √E|e|² in place of √Σ (|m_i| + root_mean_square_i)².
   std::optional<double> stated_radius{};
   Eigen::VectorXd offset{};  ///< n, m, known and the same on every path; empty where it is zero
-  /// Of periods 0, 1, … of a drive, where they differ from all later ones, of which the above is
-  /// said; none of these has any of its own.
+  /// The errors in periods 0, 1, … of a drive, where they differ from that in all later periods,
+  /// which the other members describe. Their own `first` is empty.
   std::vector<ModelError> first{};
 
-  /// What is said of period `period` ≥ 0 of a drive.
+  /// The error in period `period` ≥ 0 of a drive.
   [[nodiscard]] const ModelError& of_period(Eigen::Index period) const;
 
-  /// Bounds √E|e|², and so W2 between e and none: the stated radius, else
+  /// Bounds √E|e|², and so W2 between e and zero: the stated radius, else
   /// √Σ (|m_i| + root_mean_square_i)².
   [[nodiscard]] double radius() const;
 };
 
-/// An error of this root mean square of which nothing else is known.
+/// An error with this root mean square, of which nothing else is known.
 [[nodiscard]] ModelError model_error_of_size(const Eigen::VectorXd& root_mean_square);
 
 /// Mean, covariance (over `count`, not count − 1) and norms of samples e = x⁺ − f(x, u) − w, or of
-/// what bounds e. residuals: state_dim x count, finite. The norms are those of the samples as they
-/// are: what finitely many samples leave open is for the caller to add (`widened`).
+/// what bounds e. residuals: state_dim x count, finite. The norms are those of the samples, without
+/// a margin for their finite number, which the caller adds (`widened`).
 /// Throws std::invalid_argument without samples.
 [[nodiscard]] ModelError model_error_of(const Eigen::Ref<const Eigen::MatrixXd>& residuals);
 
-/// `error` with all norms, and the stated radius, `factor` > 0 times as large, of all periods;
-/// means, covariances and offsets stay what they are.
+/// `error` with all norms and the stated radius multiplied by `factor` > 0, in all periods; means,
+/// covariances and offsets are unchanged.
 [[nodiscard]] ModelError widened(ModelError error, double factor);
 
 }  // namespace qsmpc::controller

@@ -21,7 +21,7 @@ struct InputBounds {
   Eigen::VectorXd upper;  ///< input_dim, greater than lower
 };
 
-/// The inputs nearest to none, input_dim.
+/// The input within the bounds that is nearest to zero, input_dim.
 [[nodiscard]] inline Eigen::VectorXd resting_input(const InputBounds& bounds) {
   return bounds.lower.cwiseMax(0.0).cwiseMin(bounds.upper);
 }
@@ -43,11 +43,11 @@ struct Policy {
   [[nodiscard]] Eigen::Index horizon() const { return inputs.cols(); }
 };
 
-/// What the policy does at one state (state_dim) at stage `stage` (input_dim).
+/// The policy's input (input_dim) at one state (state_dim) at stage `stage`.
 [[nodiscard]] Eigen::VectorXd policy_input(const Policy& policy, Eigen::Index stage,
                                            const Eigen::Ref<const Eigen::VectorXd>& state);
 
-/// The same into `input`, with scratch of the caller's; allocates only in the first call.
+/// The same into `input`, with `offset` as the caller's scratch; allocates only in the first call.
 void policy_input(const Policy& policy, Eigen::Index stage,
                   const Eigen::Ref<const Eigen::VectorXd>& state, Eigen::VectorXd& offset,
                   Eigen::VectorXd& input);
@@ -79,7 +79,7 @@ struct LqrWeights {
     const models::Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
     const Eigen::Ref<const Eigen::MatrixXd>& inputs, const LqrWeights& weights);
 
-/// What the recursion works on, so that the next one allocates nothing.
+/// Scratch of the recursion; reused, it makes the next one allocation-free.
 struct LqrScratch {
   Eigen::MatrixXd a;
   Eigen::MatrixXd b;

@@ -7,8 +7,7 @@ namespace {
 
 using Span = Eigen::Map<models::StateBatch>;
 
-/// stepped = f(x, u) for the particles of stage k, which are packed as well unless nothing is to
-/// be compressed.
+/// stepped = f(x, u) for the particles of stage k, also in packed form (`scratch.packed`).
 void step_stage(const models::Dynamics& dynamics, const DiscreteMeasure& stage,
                 const Policy& policy, Eigen::Index k, const Executor& run,
                 PredictionScratch& scratch, Points& stepped) {

@@ -1,6 +1,6 @@
 // A discrete measure rolled forward along a horizon under a policy. `predict` records, for every
 // stage, how the stepped points were combined with the noise and compressed, so that the same
-// prediction can be evaluated again with these assignments held.
+// prediction can be re-evaluated with these assignments fixed.
 #pragma once
 
 #include <vector>
@@ -22,47 +22,48 @@ struct Prediction {
   std::vector<StageMap> maps;           ///< horizon; from stepped[k] to stages[k + 1]
 };
 
-/// `prediction` without the shares and offsets of its maps, which are by far the most of it where
-/// there are many points: what certificates and reports need. It can't be evaluated again.
+/// A copy of `prediction` without the shares and offsets of its maps, which take by far the most
+/// memory with many points. It suffices for certificates and reports, but cannot be evaluated
+/// again.
 [[nodiscard]] Prediction without_shares(const Prediction& prediction);
 
-/// What a prediction works on, so that the next one allocates nothing.
+/// Scratch of a prediction; reused, it makes the next one allocation-free.
 struct PredictionScratch {
   std::vector<double> inputs;
   PackedPoints packed;
 };
 
-/// Rolls `start` forward under `policy`, with assignments that suit it, into `out`, whose storage
-/// is reused.
+/// Rolls `start` forward under `policy` into `out`, whose storage is reused; the assignments are
+/// chosen for this motion.
 void predict(const models::Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
              const Policy& policy, const Executor& run, PredictionScratch& scratch,
              Prediction& out);
 
-/// The same as a new value.
+/// The same, returned by value.
 [[nodiscard]] Prediction predict(const models::Dynamics& dynamics, Propagator& propagator,
                                  const DiscreteMeasure& start, const Policy& policy);
 
-/// A prediction with all that it was made from, as certificates need it; refers to objects that
-/// must outlive it.
+/// A prediction with all of its inputs, as certificates need them; refers to objects that must
+/// outlive it.
 struct PredictedMotion {
   const models::Dynamics& dynamics;
   const Eigen::MatrixXd& noise_covariance;  ///< of the model, state_dim x state_dim
-  double noise_w2 = 0.0;                    ///< W2 between the noise and what stands for it
+  double noise_w2 = 0.0;                    ///< W2 between the noise and its discretisation
   const Gaussian& belief;                   ///< law of the state at stage 0
   double belief_w2 = 0.0;                   ///< W2 between the belief and prediction.stages[0]
   const Policy& policy;
   const Prediction& prediction;
-  /// What the plant adds to the model, period by period of a drive; null where the plant is the
+  /// The plant's error against the model, period by period of a drive; null if the plant is the
   /// model.
   const ModelError* model_error = nullptr;
-  /// What the state at stage 0 has beside a variable with the law `belief`, where that is itself
-  /// the model's prediction for a plant; null where the belief is the state's law. It is said of
-  /// one period: what it may have in `first` does not count.
+  /// The difference of the state at stage 0 from a variable with the law `belief`, if that is
+  /// itself the model's prediction for a plant; null if the belief is the state's law. It describes
+  /// one period: its `first` is ignored.
   const ModelError* belief_error = nullptr;
   /// The period of a drive that begins at stage 0: that of stage k is `first_period` + k.
   Eigen::Index first_period = 0;
 
-  /// What the plant adds in the period that begins at `stage`; null where it is the model.
+  /// The plant's error in the period that begins at `stage`; null if the plant is the model.
   [[nodiscard]] const ModelError* error_at(Eigen::Index stage) const {
     return model_error == nullptr ? nullptr : &model_error->of_period(first_period + stage);
   }

@@ -8,7 +8,7 @@
 namespace qsmpc::controller {
 namespace {
 
-/// What clusters of products f_i + d_j consist of; cluster n of mass ρ̃_n.
+/// Composition of the clusters of products f_i + d_j; cluster n has mass ρ̃_n.
 struct Clusters {
   Eigen::MatrixXd share;  ///< sources x clusters; the mass of n that comes from products of i
   Points noise_moment;    ///< d x clusters; Σ mass · d_j over the products in n

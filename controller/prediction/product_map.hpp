@@ -9,8 +9,8 @@
 
 namespace qsmpc::controller {
 
-/// All sums f_i + d_j of stepped points and noise points (Eq. 4-5); that of i and j stands at
-/// i·m + j, m being the number of noise points.
+/// All sums f_i + d_j of stepped points and noise points (Eq. 4-5); that of i and j has the index
+/// i·m + j, where m is the number of noise points.
 [[nodiscard]] DiscreteMeasure product_measure(const DiscreteMeasure& stepped,
                                               const DiscreteMeasure& noise);
 
@@ -19,7 +19,7 @@ namespace qsmpc::controller {
 [[nodiscard]] StageMap cluster_map(const Compression& compression, const Eigen::VectorXd& weights,
                                    const DiscreteMeasure& noise);
 
-/// The same with the shares that products have in clusters held instead of assignments.
+/// The same for soft clusters: fixes the products' shares in the clusters instead of assignments.
 [[nodiscard]] StageMap cluster_map(const SoftCompression& compression,
                                    const Eigen::VectorXd& weights, const DiscreteMeasure& noise);
 
@@ -27,7 +27,7 @@ namespace qsmpc::controller {
 /// storage of `out`.
 void cluster_map(const MixtureCells& cells, const Executor& run, StageMap& out);
 
-/// The map of stepped points that are not finite: all into one cluster, at infinite cost.
+/// The map of non-finite stepped points: all into one cluster, at infinite cost.
 [[nodiscard]] StageMap lost_map(const DiscreteMeasure& stepped);
 
 }  // namespace qsmpc::controller

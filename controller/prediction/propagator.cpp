@@ -13,7 +13,7 @@
 namespace qsmpc::controller {
 namespace {
 
-/// Products with the noise quantiser, brought to a number of clusters.
+/// Products with the noise quantiser, compressed to a number of clusters.
 class ProductPropagator : public Propagator {
  public:
   void update(const Points& stepped, const Eigen::VectorXd& weights, const Executor& /*run*/,
@@ -60,7 +60,7 @@ class CompressedPropagator final : public ProductPropagator {
 };
 
 /// Refined clusters, spread about their mean so that they have the covariance of the stepped points
-/// plus that of the noise: what the noise quantiser and the compression lost.
+/// plus that of the noise: this restores what the noise quantiser and the compression lost.
 class MomentMatchedPropagator final : public ProductPropagator {
  public:
   explicit MomentMatchedPropagator(const PropagatorSettings& settings)
@@ -71,9 +71,8 @@ class MomentMatchedPropagator final : public ProductPropagator {
   }
 
  private:
-  /// The clusters' means are conditional means of the products, so that the two parts of a
-  /// product's way, to its cluster's mean and from there to where the spread puts it, are
-  /// uncorrelated: their squares add.
+  /// The clusters' means are conditional means of the products, so that the two displacements of a
+  /// product, to its cluster's mean and then by the spread, are uncorrelated: their squares add.
   [[nodiscard]] StageMap compressed_map(const DiscreteMeasure& stepped,
                                         const DiscreteMeasure& product) const override {
     const Compression compression =
@@ -86,7 +85,7 @@ class MomentMatchedPropagator final : public ProductPropagator {
   }
 };
 
-/// Algorithm 1, with the shares held.
+/// Algorithm 1, with its shares fixed.
 class SoftPropagator final : public ProductPropagator {
  public:
   explicit SoftPropagator(const PropagatorSettings& settings)
@@ -105,8 +104,8 @@ class SoftPropagator final : public ProductPropagator {
   }
 };
 
-/// The noise stays Gaussian: the mixture of the stepped points' noise is cut into cells, whose
-/// means are spread so that they have its covariance.
+/// The noise stays Gaussian: the mixture about the stepped points is cut into cells, whose means
+/// are spread so that they have its covariance.
 class MixturePropagator final : public Propagator {
  public:
   explicit MixturePropagator(const PropagatorSettings& settings)
@@ -122,16 +121,16 @@ class MixturePropagator final : public Propagator {
     cluster_map(cells_, run, out);
     spread_between(cells_.covariance, cells_.whole_covariance, spread_);
     displace(out);
-    // As above: the two parts of a product's way are uncorrelated.
+    // As above: the two displacements are uncorrelated.
     out.compression_w2 = std::hypot(cells_.w2, spread_w2(cells_.covariance, spread_));
   }
 
-  /// The noise is not quantised; what its cells lose is in the cost of the map.
+  /// The noise is not quantised; the loss of its cells is part of the map's cost.
   [[nodiscard]] double noise_w2() const override { return 0.0; }
 
  private:
-  /// Moves the points to where the spread puts them, by constants: held, a spread would magnify
-  /// how they answer to the inputs, and optimisation would come to rest too early.
+  /// Moves the points to their spread positions by constant offsets: a fixed spread matrix would
+  /// amplify their response to the inputs, and optimisation would stall too early.
   void displace(StageMap& map) const {
     const Eigen::Index dim = map.offset.rows();
     const Eigen::Map<const Points> mean(cells_.mean.data(), dim, map.clusters());

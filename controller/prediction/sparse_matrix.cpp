@@ -18,8 +18,8 @@ namespace HWY_NAMESPACE {
 
 using namespace models::HWY_NAMESPACE;
 
-// Coordinates that are handled at once, and sums that are under way at the same time, so that one
-// addition need not wait for the one before it.
+// Coordinates processed at once, and concurrent partial sums, so that one addition need not wait
+// for the previous one.
 constexpr int kGroup = 4;
 constexpr int kChains = 4;
 
@@ -32,7 +32,7 @@ void pack_points(const Points& points, Eigen::Index begin, Eigen::Index end, Pac
     const Eigen::Index coordinates = std::min<Eigen::Index>(kGroup, dim - first);
     Eigen::Index i = begin;
 #if HWY_MAX_BYTES >= 32
-    // Four points at once: the transpose of a block of four by four.
+    // Four points at once: transposes a 4 x 4 block.
     using Tag = hn::FixedTag<double, kGroup>;
     const Tag d;
     const auto row = [&](Eigen::Index axis) HWY_ATTR {
@@ -95,7 +95,7 @@ void multiply_packed(const SparseMatrix& a, const PackedPoints& points, int begi
           }
         }
       }
-      // What is left, without a branch that depends on how much it is: rows differ in length.
+      // The remainder, without a branch on its size, because rows differ in length.
       for (int chain = 0; a.begin[n] < stop && chain < kChains - 1; ++chain) {
         const bool exists = k + chain < stop;
         const int entry = exists ? k + chain : stop - 1;
@@ -127,7 +127,8 @@ HWY_EXPORT(multiply_packed);
 HWY_EXPORT(pack_points);
 
 namespace {
-// Entries that are worth a block of their own in a transposition, and blocks at most.
+// Number of entries that justifies a block of its own in a transposition, and the largest number of
+// blocks.
 constexpr std::ptrdiff_t kBlock = 16384;
 constexpr std::ptrdiff_t kMostBlocks = 16;
 }  // namespace

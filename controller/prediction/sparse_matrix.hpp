@@ -1,4 +1,5 @@
-// Sparse matrices that act on batches of points, for the processor's widest vectors.
+// Sparse matrices that act on batches of points, vectorised for the processor's widest SIMD
+// instructions.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +13,13 @@
 
 namespace qsmpc::controller {
 
-/// Row n has the entries begin[n] … begin[n + 1] − 1. Storage is reused where one is written again.
+/// Row n has the entries begin[n] … begin[n + 1] − 1. Storage is reused when a matrix is
+/// overwritten.
 struct SparseMatrix {
   std::vector<int> begin;  ///< rows + 1
   std::vector<int> column;
   std::vector<double> value;
-  std::vector<int> places;  ///< what a transposition into this works on
+  std::vector<int> places;  ///< scratch of a transposition into this
 
   [[nodiscard]] int rows() const { return static_cast<int>(begin.size()) - 1; }
 };
@@ -25,7 +27,7 @@ struct SparseMatrix {
 /// out = aᵀ, for `a` with `columns` columns; the entries of a row stay in the order of a's rows.
 void transpose(const SparseMatrix& a, int columns, const Executor& run, SparseMatrix& out);
 
-/// Points one after the other, each with its coordinates side by side and zeros up to `stride`.
+/// Points one after the other, each with contiguous coordinates, padded with zeros up to `stride`.
 struct PackedPoints {
   int stride = 0;  ///< a multiple of 4, at least the dimension
   LineVector data;

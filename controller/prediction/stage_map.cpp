@@ -12,7 +12,7 @@ namespace HWY_NAMESPACE {
 
 using namespace models::HWY_NAMESPACE;
 
-// Coordinates of a point that are held in registers at once; larger dimensions take Eigen's way.
+// Coordinates of a point held in registers at once; larger dimensions use Eigen.
 constexpr Eigen::Index kHeld = 8;
 
 /// x ↦ a + S x for all columns; d ≤ kHeld.

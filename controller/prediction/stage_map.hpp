@@ -1,10 +1,10 @@
 // One stage's noise and compression as an affine map of the stepped points.
 //
-// With the assignment of products to clusters held, the new points are c̃ = A f + b with A sparse
-// and constant, because the noise is additive: built once, the map costs a few multiplications a
-// point, forwards and backwards, exactly. The points may then be spread about their mean, by a
-// matrix that is held as well, to restore the covariance that quantisation and compression have
-// lost (docs/theory/quantisation.md).
+// With the assignment of products to clusters fixed, the new points are c̃ = A f + b with A sparse
+// and constant, because the noise is additive. Once built, the map is exact and costs a few
+// multiplications per point, forwards and backwards. The points may then be spread about their
+// mean, by a matrix that is also fixed, to restore the covariance lost by quantisation and
+// compression (docs/theory/quantisation.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -32,12 +32,12 @@ struct StageMap {
 /// out = c̃. stepped: d x sources, out: d x clusters (both sized by the caller).
 void apply_stage_map(const StageMap& map, const Points& stepped, Points& out);
 
-/// The same without the spread, for the clusters begin … end − 1, and from packed points (unused
-/// where the map is the identity): what several threads do side by side.
+/// The same without the spread, for the clusters begin … end − 1, and from packed points (unused if
+/// the map is the identity): lets several threads share the work.
 void apply_shares(const StageMap& map, const Points& stepped, const PackedPoints& packed,
                   Eigen::Index begin, Eigen::Index end, Points& out);
 
-/// Moves the points of `out` from the means of their clusters to where the spread puts them.
+/// Applies the spread to the points of `out`, which are the means of their clusters.
 void apply_spread(const StageMap& map, Points& out);
 
 /// Reverse mode of `apply_stage_map`, with A, b, S and the weights held: `stepped_adjoint`
@@ -47,9 +47,9 @@ void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& step
 /// Its two parts: overwrites the adjoint of the spread points by that of the clusters' means, …
 void pullback_spread(const StageMap& map, Points& adjoint);
 
-/// … and that by the adjoint of the stepped points begin … end − 1, from `adjoint` also in packed
-/// form. `transposed` is map.shares transposed; with the packed form, unused where the map is the
-/// identity.
+/// … and writes the adjoint of the stepped points begin … end − 1, from `adjoint`, which is also
+/// passed in packed form. `transposed` is the transpose of map.shares; like the packed form, it is
+/// not used if the map is the identity.
 void pullback_shares(const StageMap& map, const SparseMatrix& transposed, const Points& adjoint,
                      const PackedPoints& packed, Eigen::Index begin, Eigen::Index end,
                      Points& stepped_adjoint);

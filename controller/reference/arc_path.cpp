@@ -10,7 +10,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// Chords of a segment from which a projection starts.
+// Chords per segment of the polyline that projection starts from.
 constexpr int kChords = 4;
 constexpr int kArcSteps = 4;
 
@@ -18,7 +18,7 @@ double across_ways(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Nodes and weights of Gauss and Legendre on [0, 1]: exact up to degree 9.
+/// Gauss-Legendre nodes and weights on [0, 1]: exact up to degree 9.
 constexpr std::array<std::pair<double, double>, 5> kGauss = {{
     {0.046910077030668004, 0.11846344252809454},
     {0.23076534494715845, 0.23931433524968324},
@@ -104,7 +104,7 @@ void ArcPath::bend(const Eigen::Matrix2Xd& points) {
     for (Eigen::Index row = 0; row < n; ++row) knots_[row + 1].bend = bends.row(row).transpose();
     return;
   }
-  // The corners of the cyclic matrix as a change of rank 1 (Sherman and Morrison).
+  // The corners of the cyclic matrix as a rank-1 update (Sherman and Morrison).
   const double corner = below[0];
   const double pivot = -diagonal[0];
   Eigen::VectorXd changed = diagonal;
@@ -186,7 +186,8 @@ PathPlace ArcPath::at(double along) const {
   return place;
 }
 
-/// From a start that is near: to where the way to the point is across the path.
+/// Newton's method from a nearby start: to where the line to the point is perpendicular to the
+/// path.
 double ArcPath::refined(const Eigen::Vector2d& point, double along, double from, double to) const {
   for (int step = 0; step < kArcSteps; ++step) {
     const PathPlace place = at(along);
@@ -219,7 +220,7 @@ double ArcPath::project(const Eigen::Vector2d& point, double from, double to) co
     if (round + begin > to) break;
     const Eigen::Vector2d start = sub_points_.col(chord);
     const Eigen::Vector2d way = sub_points_.col(chord + 1) - start;
-    // What of the chord is searched.
+    // The part of the chord within the search range.
     const double least_share = std::clamp((from - round - begin) / span, 0.0, 1.0);
     const double most_share = std::clamp((to - round - begin) / span, least_share, 1.0);
     const double share =

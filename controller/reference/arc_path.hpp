@@ -1,4 +1,4 @@
-// A smooth path in the plane by its arc length: a cubic spline through given points.
+// A smooth path in the plane, parametrised by arc length: a cubic spline through given points.
 //
 //   const ArcPath path(points, true);
 //   const PathPlace place = path.at(12.5);          // position, heading, curvature
@@ -13,41 +13,40 @@
 
 namespace qsmpc::controller {
 
-/// A place of a path.
+/// A place on a path.
 struct PathPlace {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< m
   double heading = 0.0;                                ///< of the path, rad, from −π to π
   double curvature = 0.0;                              ///< 1/m, positive to the left
 };
 
-/// The cubic spline with continuous curvature through points in turn, over the sum of the chords;
-/// natural at the ends of an open one, periodic where it is closed. On from the ends an open path
-/// is straight; a closed one goes round.
+/// The cubic spline with continuous curvature through the points in order, parametrised by
+/// cumulative chord length; natural end conditions for an open path, periodic for a closed one. An
+/// open path continues straight beyond its ends; a closed one wraps around.
 class ArcPath {
  public:
-  /// points: 2 x n in m, no two successive ones equal, of a closed path the last and the first
-  /// neither. Throws std::invalid_argument on fewer than 2 of them, 3 for a closed path, or on
-  /// others.
+  /// points: 2 x n in m, no two successive ones equal, nor the last and the first of a closed path.
+  /// Throws std::invalid_argument on invalid points, or fewer than 2 of them (3 for a closed path).
   ArcPath(const Eigen::Matrix2Xd& points, bool closed);
 
   [[nodiscard]] bool closed() const { return closed_; }
   /// Of the whole path, m.
   [[nodiscard]] double length() const { return knots_.back().arc; }
   [[nodiscard]] Eigen::Index point_count() const { return count_; }
-  /// The arc length at which the point number i is.
+  /// The arc length at point i.
   [[nodiscard]] double arc_of(Eigen::Index i) const { return knots_[i].arc; }
 
-  /// The place at arc length `along`, which may be beyond the ends, or any number of rounds.
+  /// The place at arc length `along`, which may lie beyond the ends, or span any number of laps.
   [[nodiscard]] PathPlace at(double along) const;
 
-  /// The arc length from `from` to `to` at which the path is nearest to `point`, on a closed path
-  /// counted on over the rounds. from ≤ to; a whole round or path at most is searched.
+  /// The arc length between `from` and `to` at which the path is nearest to `point`; on a closed
+  /// path, accumulated over laps. from ≤ to; at most one whole lap or path is searched.
   [[nodiscard]] double project(const Eigen::Vector2d& point, double from, double to) const;
   /// The same on the whole path, from 0 to its length.
   [[nodiscard]] double project(const Eigen::Vector2d& point) const;
 
  private:
-  // Where a segment begins, by the spline's own parameter.
+  // The start of a segment, by the spline's parameter.
   struct Knot {
     double parameter = 0.0;
     double arc = 0.0;
@@ -70,7 +69,7 @@ class ArcPath {
   bool closed_;
   Eigen::Index count_;
   std::vector<Knot> knots_;      // one more than segments
-  std::vector<double> sub_arc_;  // of a polyline finer than the points, which projection begins on
+  std::vector<double> sub_arc_;  // of a polyline finer than the points, where projection starts
   Eigen::Matrix2Xd sub_points_;
 };
 

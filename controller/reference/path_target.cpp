@@ -7,12 +7,13 @@
 namespace qsmpc::controller {
 namespace {
 
-// Places of a profile are about so far apart, m, and no more than this many.
+// Approximate spacing of a profile's places, m, and their largest number.
 constexpr double kProfileSpacing = 0.5;
 constexpr double kMostPlaces = 50'000.0;
-// A bend that is wider than this does not limit a speed, 1/m.
+// Curvatures below this do not limit the speed further, 1/m.
 constexpr double kStraight = 1e-6;
-// Progress is looked for this far about the last one, m, or so many time steps at the path's speed.
+// Progress is searched within this distance of the last one, m, or within this many time steps at
+// the path's speed if that is farther.
 constexpr double kLeastSearch = 2.0;
 constexpr double kSearchedSteps = 5.0;
 
@@ -32,7 +33,7 @@ SpeedProfile::SpeedProfile(const ArcPath& path, const SpeedLimits& limits)
   const auto limit = [&](double& speed, double before) {
     speed = std::min(speed, std::sqrt(before * before + gain));
   };
-  // Twice round a closed path, so that its beginning knows its end.
+  // Two laps of a closed path, so that limits carry over from its end to its beginning.
   const std::size_t steps = closed_ ? 2 * n : n - 1;
   for (std::size_t k = 0; k < steps; ++k) limit(speeds_[(k + 1) % n], speeds_[k % n]);
   for (std::size_t k = steps; k-- > 0;) limit(speeds_[k % n], speeds_[(k + 1) % n]);

@@ -1,4 +1,4 @@
-// A target that moves along a path: what is wanted of the states at every stage of a plan.
+// A target that moves along a path: the reference states at every stage of a plan.
 //
 //   const double progress = progress_on(target, position, last_progress);
 //   path_targets(target, system, state, progress, targets);   // targets.col(k): of stage k
@@ -18,22 +18,22 @@
 
 namespace qsmpc::controller {
 
-/// What a speed along a path may be, m/s and m/s².
+/// Limits on speed (m/s) and acceleration (m/s²) along a path.
 struct SpeedLimits {
   double along = 2.0;      ///< acceleration and deceleration, > 0
   double across = 2.0;     ///< acceleration towards the inside of a bend, > 0
   double top = kInfinity;  ///< speed, > 0
 };
 
-/// A speed by arc length: the same everywhere, or given at places that are equally far apart,
-/// linear in between.
+/// A speed as a function of arc length: constant, or piecewise linear between equidistant places.
 class SpeedProfile {
  public:
   /// m/s, > 0.
   explicit SpeedProfile(double speed) : speeds_({speed}) {}
-  /// As fast as the limits allow: across by the curvature, then along by a pass forwards and one
-  /// backwards (Heilmeier et al. 2020: "Minimum curvature trajectory planning and control for an
-  /// autonomous race car"). An open path begins and ends at the speed of its bends.
+  /// As fast as the limits allow: the lateral limit by the curvature, then the longitudinal one by
+  /// a forward and a backward pass (Heilmeier et al. 2020: "Minimum curvature trajectory planning
+  /// and control for an autonomous race car"). An open path does not start or stop at rest: at its
+  /// ends, too, only these limits apply.
   SpeedProfile(const ArcPath& path, const SpeedLimits& limits);
 
   /// m/s. Beyond the ends of an open path, as at them.
@@ -47,24 +47,24 @@ class SpeedProfile {
   bool closed_ = false;
 };
 
-/// A path that is followed at a speed.
+/// A path to follow at a speed.
 struct PathTarget {
   std::shared_ptr<const ArcPath> path;
   SpeedProfile speed{1.0};
   double time_step = 0.1;  ///< of a stage, s
-  // Arc lengths, counted on over the rounds of a closed path, m.
+  // Arc lengths, accumulated over the laps of a closed path, m.
   double begin = 0.0;  ///< where the drive begins
   double end = 0.0;    ///< where it has arrived
 };
 
-/// The arc length at which the path is nearest to `position`: near `last` where that is given, so
-/// that another stretch of the path that is nearer by is not taken for it; else on the whole path,
-/// or on the round about the drive's beginning.
+/// The arc length at which the path is nearest to `position`: near `last` if given, so that another
+/// stretch of the path that happens to be nearer is not mistaken for it; else on the whole path,
+/// or, if it is closed, on the lap centred on the drive's beginning.
 [[nodiscard]] double progress_on(const PathTarget& target, const Eigen::Vector2d& position,
                                  std::optional<double> last);
 
-/// Writes to `out` (state_dim x stages, sized by the caller) what is wanted of a vehicle that is
-/// in `state` (state_dim) at arc length `progress`: in column 0 now, and in each next one a time
+/// Writes to `out` (state_dim x stages, sized by the caller) the reference states of a vehicle in
+/// `state` (state_dim) at arc length `progress`: column 0 for now, each further column one time
 /// step later at the path's speed. Position, heading (without a jump, beginning within π of that of
 /// `state`) and, by their names, `speed` or `longitudinal_speed`, `yaw_rate`, `velocity_x` and
 /// `velocity_y` are those of the path; other states are 0.

@@ -1,4 +1,4 @@
-// How far a drive has come that is not simply to a target.
+// Progress of a drive along a path or over waypoints.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,8 @@
 
 namespace qsmpc::controller {
 
-/// Progress in `state` (state_dim, finite), after `before` a period earlier, if there was one: arc
-/// length on the path, m, or how many waypoints have been passed. Nothing where there are neither.
+/// Progress in `state` (state_dim, finite), given the progress `before` of a period earlier, if
+/// any: arc length on the path, m, or the number of waypoints passed. Empty without either.
 [[nodiscard]] std::optional<double> progress_after(const std::optional<PathTarget>& path,
                                                    const std::optional<Waypoints>& waypoints,
                                                    const models::SystemDescription& system,

@@ -8,9 +8,9 @@
 namespace qsmpc::controller {
 namespace {
 
-// How far a chord may be off its curve, m.
+// The largest deviation of a chord from its curve, m.
 constexpr double kChordError = 0.008;
-// Places of a segment at which its curvature is looked at.
+// Number of intervals at whose ends a segment's curvature is sampled.
 constexpr int kLooks = 8;
 
 /// A place of the path with the widths there.
@@ -52,10 +52,10 @@ Eigen::Index segments_of(const ArcPath& path) {
   return path.closed() ? path.point_count() : path.point_count() - 1;
 }
 
-/// Into how many chords the edges' curves are cut.
+/// The number of chords that approximate the edges along the segment.
 int chords_of(const Segment& segment) {
-  // A chord over the arc length h of a centre line of curvature κ is off the edge at the distance w
-  // outside of the bend by h² κ (1 + κ w) / 8.
+  // For a centre line of curvature κ, a chord over arc length h deviates from the edge at distance
+  // w on the outside of the bend by h² κ (1 + κ w) / 8.
   double most = 0.0;
   for (int k = 0; k <= kLooks; ++k) {
     const RoadSection section = segment.at(static_cast<double>(k) / kLooks);

@@ -1,4 +1,4 @@
-// The body of a vehicle as the discs that cover it: what has to keep clear of the unsafe set.
+// The body of a vehicle, covered by discs, which must keep clear of the unsafe set.
 #pragma once
 
 #include <vector>
@@ -9,17 +9,17 @@
 
 namespace qsmpc::controller {
 
-/// A disc that is fixed to the body.
+/// A disc fixed to the body.
 struct Disc {
   double radius = 0.0;                               ///< m, ≥ 0
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< of its centre from the position, in the
                                                      ///< body's frame (forward, left), m
 };
 
-/// Which discs cover the vehicle, and which states say where it stands.
+/// The discs that cover the vehicle, and the states that give its pose.
 struct Body {
-  std::vector<Disc> discs;  ///< none: the vehicle is the point at its position
-  // Indices of states; -1 where the system has none.
+  std::vector<Disc> discs;  ///< if empty, the vehicle is the point at its position
+  // State indices; -1 if the system has no such state.
   int x = -1;
   int y = -1;
   int heading = -1;

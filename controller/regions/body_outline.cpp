@@ -16,8 +16,8 @@ constexpr double kLeastArc = 1e-9;  // rad: shorter ones are rounding
 
 using Interval = std::pair<double, double>;
 
-/// Adds the angles of `disc` that lie in `other`, as intervals within [0, 2π]. Of two discs that
-/// are the same, the first in the list is the one that is seen.
+/// Adds the angles of `disc` that lie in `other`, as intervals within [0, 2π]. Of two identical
+/// discs, the first in the list is visible.
 void add_hidden(const Disc& disc, const Disc& other, bool other_first,
                 std::vector<Interval>& hidden) {
   const Eigen::Vector2d way = other.offset - disc.offset;
@@ -39,7 +39,7 @@ void add_hidden(const Disc& disc, const Disc& other, bool other_first,
   if (end > kTurn) hidden.emplace_back(0.0, end - kTurn);
 }
 
-/// What is left of [0, 2π].
+/// The rest of [0, 2π].
 std::vector<Interval> seen_between(std::vector<Interval> hidden) {
   std::sort(hidden.begin(), hidden.end());
   std::vector<Interval> seen;
@@ -49,7 +49,7 @@ std::vector<Interval> seen_between(std::vector<Interval> hidden) {
     reached = std::max(reached, end);
   }
   if (reached < kTurn - kLeastArc) seen.emplace_back(reached, kTurn);
-  // One arc that goes on beyond 2π, not two.
+  // Join the two arcs that meet at 2π.
   if (seen.size() > 1 && seen.front().first == 0.0 && seen.back().second == kTurn) {
     seen.back().second += seen.front().second;
     seen.erase(seen.begin());

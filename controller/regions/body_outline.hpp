@@ -9,7 +9,7 @@
 
 namespace qsmpc::controller {
 
-/// A part of a circle, counterclockwise from one angle to another.
+/// A circular arc, counterclockwise from one angle to another.
 struct Arc {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< m
   double radius = 0.0;                               ///< m
@@ -17,8 +17,8 @@ struct Arc {
   double to = 0.0;                                   ///< rad, from < to ≤ from + 2π
 };
 
-/// What bounds the union of the body's discs where it stands at `position` (m) with `heading`
-/// (rad): the arcs of each disc that lie in no other. Empty for a point.
+/// The boundary of the union of the body's discs at `position` (m) and `heading` (rad): the arcs of
+/// each disc that lie in no other disc. Empty for a point.
 [[nodiscard]] std::vector<Arc> body_outline(const Body& body, const Eigen::Vector2d& position,
                                             double heading);
 

@@ -14,7 +14,7 @@ namespace {
 
 class BoxRegion final : public UnsafeRegion {
  public:
-  /// `grown` holds every point that is nearer than `radius` to `core`.
+  /// `grown` contains every point nearer than `radius` to `core`.
   BoxRegion(const Box& core, double radius, const Box& grown)
       : core_(core),
         core_intervals_(bounded_axes(core)),
@@ -115,7 +115,7 @@ RegionPointer make_box(const Box& intervals, const Growth& growth) {
       position_alone = false;
     }
   }
-  // A radius is a distance in the plane, which has no meaning together with other coordinates.
+  // The radius is a distance in the plane; it has no meaning combined with other coordinates.
   if (position_alone) {
     return std::make_shared<const BoxRegion>(intervals, growth.radius, grown);
   }

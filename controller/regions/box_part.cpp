@@ -9,7 +9,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// What a part of the unsafe set may add without being worked out further.
+// A bound of a part at or below this value is not refined.
 constexpr double kNegligibleTail = 1e-8;
 
 }  // namespace
@@ -43,7 +43,7 @@ BoxPart box_part(const Box& box) {
 }
 
 void add_part_probability(const SurrogateLaw& state, const BoxPart& part, RegionProbability& sum) {
-  // One value of the highest order settles the parts that are far away.
+  // A single evaluation at the highest order settles distant parts.
   const std::size_t highest = kHigherOrders.size() - 1;
   double markov = far_region_bound(state.law, state.higher[highest], kHigherOrders[highest], part,
                                    kNegligibleTail);
@@ -55,7 +55,7 @@ void add_part_probability(const SurrogateLaw& state, const BoxPart& part, Region
     markov = std::min(markov, markov_region_bound(perturbed, part));
     smooth = std::min(markov, smooth_region_bound(perturbed, part));
   }
-  // Searches in two coordinates are dear: only where they can matter.
+  // Searches in two coordinates are expensive: done only where they can matter.
   for (std::size_t k = kHigherOrders.size(); k-- > 0 && smooth > state.worthwhile;) {
     markov =
         std::min(markov, tail_region_bound(state.law, state.higher[k], kHigherOrders[k], part));

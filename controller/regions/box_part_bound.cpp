@@ -17,19 +17,23 @@ namespace {
 // ½ · max over sets A of ∫_A ∂²p for a standard normal density p: a quarter of E|Z² − 1|, which is
 // 4φ(1); rounded up.
 constexpr double kCurvature = 0.24198;
-// Octaves over which t is searched, from the error's root mean square on; every t gives a bound.
+// Octaves over which t is searched, starting at the error's root mean square; every t gives a
+// bound.
 constexpr int kPartOctaves = 24;
-// Steps to an octave about the best of these, and to a step about the best of those: 1 % in t.
+// Refinements of the search: steps per octave about the best t, then about the best of those, which
+// gives 1 % in t.
 constexpr int kFineSteps = 8;
 constexpr int kFinestSteps = 56;
-// Golden sections for τ of the norms of higher order; beyond 30, no less than 1e-6 is left.
+// Golden-section search for τ in the bounds by norms of higher order, up to τ = 30, where the tail
+// τ⁻⁴ of order 4 is about 1e-6.
 constexpr double kLargestTailRatio = 30.0;
 constexpr int kTailSteps = 7;
-// A probability that no certificate needs to be told from zero.
+// Probabilities at or below this count as zero for every certificate.
 constexpr double kZeroProbability = 1e-9;
-// An estimate from which on a part is not far away.
+// Above this estimate a part is not far away.
 constexpr double kNotFar = 0.05;
-// Of n's covariance, relative to the product of the variances: below it rounding decides.
+// Determinant of n's covariance relative to the product of the variances: below this, rounding
+// dominates.
 constexpr double kLeastDeterminant = 1e-12;
 
 /// Mean square of the density of n at the distance to `edge`, E φ_s(edge − y)², with
@@ -68,15 +72,15 @@ double smooth_slab(const PerturbedGaussian& state, const BoxPart& part, Eigen::I
   const double rest = std::max(0.0, variance - smooth);
   const double slope = std::sqrt(mean_square_density(lower, mean, smooth, rest) +
                                  mean_square_density(upper, mean, smooth, rest));
-  // One wall: the second derivative is that of Φ alone, half of what two can reach together.
+  // With a single wall, the second derivative is that of one Φ: half of what two walls can reach.
   const double curvature = std::isinf(lower) || std::isinf(upper) ? 0.5 * kCurvature : kCurvature;
   return inside + error * slope + curvature * error * error / smooth;
 }
 
 /// E (∂_a h)² for the rectangle of axes a (first) and b (second): at each edge the density of n_a,
-/// squared, with the probability of being beside it, which is at most 1 and so serves unsquared.
-/// n_b given n_a is βn_a + ν, so (y_a + n', y_b + βn' + ν) with n' of half the variance of n_a is
-/// Gaussian and only has to be taken at the edge.
+/// squared, times the probability of lying alongside it, which is at most 1 and therefore need not
+/// be squared. n_b given n_a is βn_a + ν, so (y_a + n', y_b + βn' + ν) with n' of half the variance
+/// of n_a is Gaussian and only has to be evaluated at the edge.
 double mean_square_slope(const Eigen::Vector2d& mean, const Eigen::Matrix2d& rest,
                          const Eigen::Matrix2d& smooth, const Eigen::Vector2d& lower,
                          const Eigen::Vector2d& upper, int a) {
@@ -112,7 +116,7 @@ double smooth_rectangle(const PerturbedGaussian& state, const BoxPart& part, Eig
       rectangle_probability(mean, covariance, lower, upper) + rectangle_error(covariance);
   if (error.isZero(0.0)) return inside;
   const Eigen::Matrix2d smooth = state.smoothing(pair, pair);
-  // Rounding of the two covariances can leave this a hair below zero; the diagonal is what counts.
+  // Rounding of the two covariances can make this slightly negative; only the diagonal matters.
   Eigen::Matrix2d rest = covariance - smooth;
   rest.diagonal() = rest.diagonal().cwiseMax(0.0);
   double bound = inside;
@@ -130,8 +134,8 @@ double smooth_rectangle(const PerturbedGaussian& state, const BoxPart& part, Eig
                         2.0 * std::abs(smooth(0, 1)) * error[0] * error[1];
     return bound + kCurvature * form / determinant;
   }
-  // Along one axis only: what counts is how n spreads there once its other coordinate is known,
-  // which decides whether it is beside.
+  // Error along one axis only: the relevant spread is that of n along it given n's other
+  // coordinate, which decides whether n lies alongside the edge.
   const int moved = error[0] > 0.0 ? 0 : 1;
   const double other = smooth(1 - moved, 1 - moved);
   if (other > 0.0 && !regular) return 1.0;
@@ -139,21 +143,21 @@ double smooth_rectangle(const PerturbedGaussian& state, const BoxPart& part, Eig
   return bound + kCurvature * error[moved] * error[moved] / spread;
 }
 
-/// A part of the unsafe set that is moved outwards by τ norms, in units of a law's deviations.
+/// A part of the unsafe set whose faces are moved outwards by τ norms.
 class WidenedPart {
  public:
   WidenedPart(const Gaussian& law, const Eigen::VectorXd& norms, const BoxPart& part)
       : law_(law), norms_(norms), axes_(part.axes), part_(part.box), box_(part.box) {}
 
-  /// What may be outside of the widened part of e, |axes| τ^−p.
+  /// Bound of the probability that e exceeds the widening, |axes| τ^−p.
   [[nodiscard]] double tails(double ratio, int order) const {
     double power = static_cast<double>(axes_.size());
     for (int k = 0; k < order; ++k) power /= ratio;
     return power;
   }
 
-  /// At least P(z ∈ part widened by τ norms): the least over its coordinates and, unless one of
-  /// these is small enough by itself, its pairs of coordinates.
+  /// An upper bound of P(z ∈ part widened by τ norms): the least over its coordinates and, unless
+  /// one of these is already small enough, over its pairs of coordinates.
   double probability(double ratio) {
     widen(ratio);
     const double slab = least_slab();
@@ -168,7 +172,8 @@ class WidenedPart {
     return std::min(slab, rectangle);
   }
 
-  /// About the same, for searches; a pair's rectangle is never more than its slabs.
+  /// An estimate of the same, for searches; a pair's rectangle never has more probability than its
+  /// slabs.
   double estimate(double ratio) {
     widen(ratio);
     if (axes_.size() == 1) return least_slab();
@@ -230,7 +235,7 @@ bool usable(const Gaussian& law, const Eigen::VectorXd& norms, const BoxPart& pa
   return known && !part.axes.empty() && law.mean.allFinite() && law.covariance.allFinite();
 }
 
-/// A t at which square/t² + E(1 − d(z, part)²/t²)₊ is near its least.
+/// Search for a t that nearly minimises square/t² + E(1 − d(z, part)²/t²)₊.
 class ReachSearch {
  public:
   ReachSearch(const SoftPart& part, double square) : part_(part), square_(square) {}
@@ -239,7 +244,7 @@ class ReachSearch {
     const double least = 1.02 * std::sqrt(square_);
     constexpr int kCount = kSoftReaches;
     for (int octave = 0; octave < kPartOctaves; octave += kCount) {
-      // What is near grows with t, so that no larger t can be better.
+      // The second term grows with t, so that no larger t can be better.
       if (try_about(std::ldexp(least, octave), 1.0, 0.0) >= least_value_) break;
     }
     const double coarse = best_;
@@ -273,8 +278,8 @@ class ReachSearch {
   double least_value_ = kInfinity;
 };
 
-/// Where `value` is least by golden sections over [first, first · ratio], in the logarithm. It is
-/// expected to be unimodal; where it is not, the result is one of its local minima.
+/// Minimiser of `value` over [first, first · ratio] by golden-section search in the logarithm.
+/// `value` should be unimodal; if it is not, the result is one of its local minima.
 template <class Value>
 double least_on_logarithmic_scale(const Value& value, double first, double ratio, int steps) {
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
@@ -311,7 +316,7 @@ double markov_region_bound(const PerturbedGaussian& state, const BoxPart& part) 
     return 1.0;
   }
   const SoftPart soft = soft_part(state.law.mean, state.law.covariance, part.box);
-  // The search is by vectors; what it finds is worked out with the smaller allowances.
+  // The search uses the vector loops; its result is evaluated again with smaller allowances.
   const double t = square == 0.0 ? kSmallestReach : ReachSearch(soft, square).best();
   return std::min(1.0, square / (t * t) + soft_part_probability(soft, t));
 }

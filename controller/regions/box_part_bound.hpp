@@ -26,14 +26,14 @@ struct PerturbedGaussian {
 [[nodiscard]] double tail_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
                                        const BoxPart& part);
 
-/// The same with the one τ that leaves half of `enough` (> 0) to the tails: as good as a search
-/// where the result is at most `enough`. 1 where the part is so near that this τ is of no use.
+/// The same with the single τ that leaves half of `enough` (> 0) to the tails: as good as a search
+/// if the result is at most `enough`. Returns 1 if the part is too near for this τ to be useful.
 [[nodiscard]] double far_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
                                       const BoxPart& part, double enough);
 
 /// C4: P(z ∈ part) and the first two orders in e of the probability smoothed by n,
 ///     P(z ∈ part) + Σ_a error_a ‖∂_a h‖ + 0.242 E[eᵀ N⁻¹ e],  h(y) = P(y + n ∈ part),
-/// the least over the part's coordinates and pairs of them.
+/// minimised over the part's coordinates and pairs of coordinates.
 [[nodiscard]] double smooth_region_bound(const PerturbedGaussian& state, const BoxPart& part);
 
 }  // namespace qsmpc::controller

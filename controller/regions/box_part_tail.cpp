@@ -9,12 +9,12 @@
 namespace qsmpc::controller {
 namespace {
 
-// Variances below this share of the largest, or below the square of a nanometre, are taken to be
-// it: a law that is certain has no standard deviation to count in.
+// Variances below this share of the largest, or below the square of a nanometre, are raised to it:
+// a law that is certain has no standard deviation to measure distances in.
 constexpr double kLeastVarianceShare = 1e-12;
 constexpr double kLeastVariance = 1e-18;
 
-/// How far a law is from a part, in standard deviations, and its derivative by the law's mean.
+/// Distance of a law from a part, in standard deviations, and its derivative by the law's mean.
 struct Separation {
   double z = kInfinity;
   std::array<Eigen::Index, 2> axes{};
@@ -22,7 +22,7 @@ struct Separation {
   std::size_t count = 0;
 };
 
-/// The interval of one coordinate of the box, and the law's there.
+/// One coordinate: the box's interval, and the law's mean and variance.
 struct Side {
   Eigen::Index axis;
   double lower;
@@ -30,7 +30,7 @@ struct Side {
   double mean;
   double variance;
 
-  /// Outside: how far beyond the nearest end, and the sign of the normal there; inside less than 0.
+  /// Distance beyond the nearest end, negative inside; and the sign of the normal there.
   [[nodiscard]] double outside() const { return std::max(lower - mean, mean - upper); }
   [[nodiscard]] double normal() const { return lower - mean > mean - upper ? -1.0 : 1.0; }
   [[nodiscard]] double end() const { return normal() < 0.0 ? lower : upper; }
@@ -46,7 +46,7 @@ Side side_of(const Gaussian& law, const BoxPart& part, Eigen::Index axis) {
           .variance = std::max(law.covariance(axis, axis), floor)};
 }
 
-/// From the face at the nearest end of `side` alone: the separation from its half-space.
+/// The separation from the half-space at the nearest end of `side`.
 Separation of_half_space(const Side& side) {
   const double deviation = std::sqrt(side.variance);
   return {.z = side.outside() / deviation,
@@ -55,8 +55,8 @@ Separation of_half_space(const Side& side) {
           .count = 1};
 }
 
-/// From a rectangle for a mean outside of it, whose nearest point is on the face of `face`: the
-/// other coordinate is the conditional mean there, clamped to the face.
+/// The separation from a rectangle of a mean outside it whose nearest point is on the face of
+/// `face`: the other coordinate of that point is the conditional mean on the face, clamped to it.
 Separation of_face(const Side& face, const Side& other, double cross) {
   const double across = face.mean - face.end();
   const double along_free = -cross / face.variance * across;
@@ -91,13 +91,14 @@ Separation of_rectangle(const Side& one, const Side& two, double cross) {
 }  // namespace
 
 void add_part_tail(const Gaussian& law, const BoxPart& part, TailSum& sum) {
-  // A point in all of space is in it; and where a law is no number, nothing is said.
+  // Nothing is added for a part without bounded axes, the whole space, or for a law that is NaN.
   Separation farthest{.z = -kInfinity};
   const auto take = [&](const Separation& one) {
     if (one.z > farthest.z) farthest = one;
   };
   if (part.axes.size() == 1) take(of_half_space(side_of(law, part, part.axes[0])));
-  // In more than two coordinates any pair's rectangle holds the box; the farthest says most.
+  // In more than two coordinates every pair's rectangle contains the box; the farthest is the most
+  // informative.
   for (std::size_t i = 0; i < part.axes.size(); ++i) {
     for (std::size_t j = i + 1; j < part.axes.size(); ++j) {
       const Eigen::Index a = part.axes[i];

@@ -10,7 +10,8 @@ DiscPlacement::DiscPlacement(const Body& body, const Disc& disc)
 }
 
 double DiscPlacement::lipschitz() const {
-  // The largest singular value of [[1, |o|], [0, 1]]: the heading stays beside what it moves.
+  // The largest singular value of [[1, |o|], [0, 1]]: the heading stays in the state while it moves
+  // the position.
   return at_position() ? 1.0 : 0.5 * reach_ + std::sqrt(1.0 + 0.25 * reach_ * reach_);
 }
 

@@ -1,4 +1,4 @@
-// Where the centre of a disc of the body is: the state, with its position moved to there.
+// The centre of a disc of the body, as the state with its position moved there.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,29 +15,30 @@ namespace qsmpc::controller {
 /// offset.
 class DiscPlacement {
  public:
-  /// The state as it is.
+  /// The identity.
   DiscPlacement() = default;
-  /// `body` says which states are position and heading; an offset needs all three.
+  /// `body` names the states of position and heading; a disc with an offset needs all three.
   DiscPlacement(const Body& body, const Disc& disc);
 
-  /// Whether the centre is the position itself, so that nothing is moved.
+  /// Whether the centre is the position itself, i.e. the map is the identity.
   [[nodiscard]] bool at_position() const { return reach_ == 0.0; }
   /// |o|, m
   [[nodiscard]] double reach() const { return reach_; }
   /// The angle of o in the body's frame, rad.
   [[nodiscard]] double bearing() const { return bearing_; }
-  // Indices of states, if not at_position().
+  // State indices, unless at_position().
   [[nodiscard]] int x() const { return x_; }
   [[nodiscard]] int y() const { return y_; }
   [[nodiscard]] int heading() const { return heading_; }
-  /// Of the map, in the Euclidean norm: |o|/2 + √(1 + |o|²/4), and 1 at the position.
+  /// Lipschitz constant of the map in the Euclidean norm: |o|/2 + √(1 + |o|²/4), and 1 at the
+  /// position.
   [[nodiscard]] double lipschitz() const;
 
   [[nodiscard]] Eigen::VectorXd of(const Eigen::Ref<const Eigen::VectorXd>& state) const;
   /// The same for the columns `range` of `states`, into columns 0 … of `out`, which is resized.
   void of(const Points& states, ParticleRange range, Points& out) const;
-  /// Adds to the columns `range` of `adjoint` what the derivatives by the moved states, in columns
-  /// 0 … of `moved_adjoint`, are by `states`.
+  /// Applies the chain rule to the derivatives by the moved states, in columns 0 … of
+  /// `moved_adjoint`, and adds the derivatives by `states` to the columns `range` of `adjoint`.
   void pull_back(const Points& states, ParticleRange range, const Points& moved_adjoint,
                  Points& adjoint) const;
 

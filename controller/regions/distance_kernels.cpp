@@ -16,8 +16,8 @@ using namespace models::HWY_NAMESPACE;
 
 /// Where points are relative to a box.
 struct BoxRelation {
-  Vector depth;    // the distance to the nearest face inside, less than 0 outside
-  Vector squared;  // of the distance, outside
+  Vector depth;    // distance to the nearest face inside; negative outside
+  Vector squared;  // squared distance, outside
 };
 
 template <class LoadAt>

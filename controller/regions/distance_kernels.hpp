@@ -1,4 +1,4 @@
-// The loops of the distances to walls and boxes over many points, for the processor's widest
+// SIMD loops for the distances from many points to walls and boxes, for the processor's widest
 // vectors.
 #pragma once
 
@@ -9,12 +9,12 @@
 
 namespace qsmpc::controller {
 
-/// As UnsafeRegion::lower_to_distances, of what is outside of these intervals.
+/// As UnsafeRegion::lower_to_distances, for the outside of these intervals.
 void lower_to_wall_distances(const std::vector<AxisInterval>& intervals, const Points& points,
                              Eigen::ArrayXd& least);
 
-/// As UnsafeRegion::lower_to_distances, of what is nearer than `radius` to the box that is bounded
-/// in these intervals.
+/// As UnsafeRegion::lower_to_distances, for the points nearer than `radius` to the box with these
+/// intervals.
 void lower_to_box_distances(const std::vector<AxisInterval>& intervals, double radius,
                             const Points& points, Eigen::ArrayXd& least);
 

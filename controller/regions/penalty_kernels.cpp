@@ -37,9 +37,9 @@ HWY_INLINE Vector positive(Vector value) { return hn::Max(value, zeros()); }
 
 /// Where a point is relative to an obstacle.
 struct Relation {
-  Vector squared;  // of the distance, if outside
-  Vector depth;    // of the nearest face, if inside
-  Vector nearest;  // that face's axis, as a position in the list of faces
+  Vector squared;  // squared distance, if outside
+  Vector depth;    // distance to the nearest face, if inside
+  Vector nearest;  // index of that face's axis in the list of faces
   Vector outward;  // the sign of its normal
 };
 

@@ -1,4 +1,4 @@
-// The loops of the smooth penalties of walls and boxes over the particles of one stage, for the
+// SIMD loops for the smooth penalties of walls and boxes over the particles of one stage, for the
 // processor's widest vectors.
 #pragma once
 
@@ -9,11 +9,11 @@
 
 namespace qsmpc::controller {
 
-/// As UnsafeRegion::add_penalty, of both ends of one coordinate's bounds; where they overlap, both
+/// As UnsafeRegion::add_penalty, for both ends of one coordinate's bounds; where they overlap, both
 /// count.
 double wall_penalty(const AxisInterval& bounds, const PenaltyBatch& batch);
 
-/// As UnsafeRegion::add_penalty, of the box that is bounded in these intervals.
+/// As UnsafeRegion::add_penalty, for the box with these intervals.
 double box_penalty(const std::vector<AxisInterval>& intervals, const PenaltyBatch& batch);
 
 }  // namespace qsmpc::controller

@@ -1,9 +1,8 @@
-// The safe set (Eq. 4-7): a box in state space without a number of obstacles, boxes of any
-// coordinates or shapes of the plane of position, and within a road if there is one.
+// The safe set (Eq. 4-7): a box in state space minus obstacles, which are boxes in any coordinates
+// or shapes in the plane of position, and inside the road if there is one.
 //
 // Its complement, the unsafe set (unsafe_set.hpp), is closed: touching a wall or an obstacle counts
-// as unsafe, so that every probability of being unsafe that is computed from it is on the cautious
-// side.
+// as unsafe, so that every probability of being unsafe computed from it errs on the cautious side.
 #pragma once
 
 #include <memory>
@@ -26,7 +25,7 @@ namespace qsmpc::controller {
 
 class RoadWalls;
 
-/// An axis-aligned box; ±infinity where a coordinate is not restricted.
+/// An axis-aligned box; ±infinity where a coordinate is unrestricted.
 struct Box {
   Eigen::VectorXd lower;
   Eigen::VectorXd upper;
@@ -40,11 +39,11 @@ struct Obstacle {
   // NOLINTEND(google-explicit-constructor)
 
   std::variant<Box, PlanarShape> form;
-  std::optional<models::ObstacleMotion> motion{};  ///< of a shape; without, it stands
+  std::optional<models::ObstacleMotion> motion{};  ///< of a shape; empty: it stands still
 
-  /// null where it is a shape.
+  /// Null if the obstacle is a shape.
   [[nodiscard]] const Box* box() const { return std::get_if<Box>(&form); }
-  /// null where it is a box.
+  /// Null if the obstacle is a box.
   [[nodiscard]] const PlanarShape* shape() const { return std::get_if<PlanarShape>(&form); }
 };
 
@@ -54,16 +53,16 @@ struct SafeSet {
   Box bounds;
   std::vector<Obstacle> obstacles;
   Body body{};
-  /// Where those that move will be, in the order in which they are above; copies share it. Without
-  /// it they stand where they are written.
+  /// Predicted places of the moving obstacles, in the order of `obstacles`; copies share it.
+  /// Without it they stand still where they are defined.
   std::shared_ptr<const ObstacleForecast> forecast{};
-  /// What is behind the edges of the road (planar/road_walls.hpp); without one, nothing.
+  /// The walls behind the edges of the road (planar/road_walls.hpp); null without a road.
   std::shared_ptr<const RoadWalls> road{};
 
   [[nodiscard]] Eigen::Index dim() const { return bounds.lower.size(); }
 };
 
-/// The obstacles that move, in their order.
+/// The moving obstacles, in their order.
 [[nodiscard]] std::vector<const Obstacle*> moving_obstacles(const SafeSet& safe_set);
 
 /// The whole space of dimension `dim`, which nothing can leave.
@@ -73,13 +72,14 @@ struct SafeSet {
 /// NaN and lower < upper everywhere.
 void check_box(const Box& box, Eigen::Index dim, const std::string& name);
 
-/// Throws std::invalid_argument on radii or offsets that make no sense, and on discs that states of
-/// dimension `dim` cannot place.
+/// Throws std::invalid_argument on invalid radii or offsets, and on discs that cannot be placed by
+/// states of dimension `dim`.
 void check_body(const Body& body, Eigen::Index dim);
 
-/// check_box for the bounds and all boxes, check_planar_shape for all shapes, which need a plane of
-/// position, check_obstacle_motion for what moves, which must be shapes and as many as a forecast
-/// has, and check_body for the body.
+/// Applies check_box to the bounds and all boxes, check_planar_shape to all shapes,
+/// check_obstacle_motion to all motions and check_body to the body. Shapes and a road need two
+/// position states; only shapes may move; a forecast must be for as many obstacles as move. Throws
+/// std::invalid_argument.
 void check_safe_set(const SafeSet& safe_set);
 
 /// Euclidean distance from `point` to the box; 0 inside it.
@@ -87,7 +87,7 @@ void check_safe_set(const SafeSet& safe_set);
                                      const Box& box);
 
 /// How deep `point` is inside `box`: the least distance to a face; negative outside, where only the
-/// sign matters.
+/// sign is meaningful.
 [[nodiscard]] double depth_in_box(const Eigen::Ref<const Eigen::VectorXd>& point, const Box& box);
 
 /// An interval of one coordinate.
@@ -97,7 +97,7 @@ struct AxisInterval {
   double upper;
 };
 
-/// The intervals in which the box is bounded.
+/// The intervals of the coordinates in which the box is bounded.
 [[nodiscard]] std::vector<AxisInterval> bounded_axes(const Box& box);
 
 }  // namespace qsmpc::controller

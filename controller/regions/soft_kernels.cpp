@@ -21,7 +21,7 @@ using namespace models::HWY_NAMESPACE;
 // Beyond this many standard deviations a normal tail is below kSoftMassError.
 constexpr double kTailReach = 8.6;
 
-/// The spread and its inverse, and those of the reach.
+/// The standard deviation, the reach and their inverses.
 struct SoftScale {
   Vector deviation;
   Vector inverse;
@@ -29,8 +29,8 @@ struct SoftScale {
   Vector inverse_square;  ///< of the reach
 };
 
-/// At least E[(1 − (D − y)²/t²); D − t ≤ y ≤ D] for y ~ N(0, s²), where `edge` are the values at
-/// D/s; zero where that is less than kSoftMassError.
+/// An upper bound of E[(1 − (D − y)²/t²); D − t ≤ y ≤ D] for y ~ N(0, s²), where `edge` holds the
+/// values at D/s; zero where the expectation is less than kSoftMassError.
 HWY_INLINE Vector before_wall(Vector wall, const NormalValues& edge, const SoftScale& scale) {
   const Vector s = scale.deviation;
   const Vector from = wall - scale.reach;
@@ -72,7 +72,7 @@ HWY_INLINE Vector soft_interval(Vector below, Vector above, const SoftScale& sca
   return hn::Min(value, constant(1.0));
 }
 
-/// The same without spread: (1 − dist²/t²)₊.
+/// The same for a deviation of 0: (1 − dist²/t²)₊.
 HWY_INLINE Vector hard_interval(Vector below, Vector above, const SoftScale& scale) {
   const Vector distance = hn::Max(hn::Max(below, above), zeros()) / scale.reach;
   return hn::Max(zeros(), constant(1.0) - distance * distance);
@@ -93,7 +93,7 @@ void by_reach(const SoftInterval& interval, const double* reaches, std::size_t c
   const bool spread = interval.deviation > 0.0;
   const FiniteEnds finite = finite_ends(interval);
   for_vectors(count, [&](std::size_t i, auto read, auto write, std::size_t) HWY_ATTR {
-    // Lanes that do not exist read as zero; what comes of them is not written.
+    // Lanes past the end read as zero; their results are not written.
     const SoftScale scale = scale_of(interval.deviation, read(reaches + i));
     write(spread ? soft_interval(below, above, scale, finite) : hard_interval(below, above, scale),
           out + i);
@@ -116,13 +116,13 @@ void by_mean(const SoftInterval& interval, double t, const double* means, std::s
   });
 }
 
-// Beyond it lies less than 1e-9.
+// Less than 1e-9 of the probability lies beyond it on either side.
 constexpr double kEstimateReach = 6.0;
 // A multiple of kLanes.
 constexpr std::size_t kEstimateNodes = 16;
 
-/// ∫ φ(x) [Φ((high − rx)/√(1 − r²)) − Φ((low − rx)/√(1 − r²))] dx by Gauss's rule, whose nodes and
-/// weights on [−1, 1] come one after the other.
+/// ∫ φ(x) [Φ((high − rx)/√(1 − r²)) − Φ((low − rx)/√(1 − r²))] dx by Gauss quadrature with the
+/// given nodes and weights on [−1, 1].
 double estimate_rectangle(const StandardRectangle& rectangle, double correlation,
                           const double* nodes, const double* weights) {
   const double from = std::fmax(rectangle.low[0], -kEstimateReach);
@@ -136,7 +136,7 @@ double estimate_rectangle(const StandardRectangle& rectangle, double correlation
     const Vector shift = constant(correlation) * x;
     const Vector upper = (constant(rectangle.high[1]) - shift) * constant(inverse);
     const Vector lower = (constant(rectangle.low[1]) - shift) * constant(inverse);
-    // In the tail in which the interval lies.
+    // Evaluated in the tail in which the interval lies.
     const Mask flip = hn::Gt(lower, zeros());
     const Vector far = normal_values(hn::IfThenElse(flip, zeros() - lower, upper)).probability;
     const Vector near = normal_values(hn::IfThenElse(flip, zeros() - upper, lower)).probability;
@@ -155,7 +155,7 @@ namespace qsmpc::controller {
 
 namespace {
 
-/// Gauss's rule for rectangle_estimate.
+/// Gauss quadrature rule for rectangle_estimate.
 struct EstimateRule {
   static constexpr std::size_t kCount = HWY_NAMESPACE::kEstimateNodes;
   std::array<double, kCount> nodes;

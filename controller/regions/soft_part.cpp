@@ -14,12 +14,13 @@ namespace {
 
 constexpr double kWallRounding = 8.0 * std::numeric_limits<double>::epsilon();
 
-/// E[(1 − (D − y)²/t²); D − t ≤ y ≤ D] for y ~ N(0, s²): what lies within t before a wall at D.
+/// E[(1 − (D − y)²/t²); D − t ≤ y ≤ D] for y ~ N(0, s²): the contribution of the points within t
+/// before a wall at D.
 double before_wall(double wall, double deviation, double t) {
   if (wall - t > kTail * deviation || wall < -kTail * deviation) return kTailAllowance;
   const double low = (wall - t) / deviation;
   const double high = wall / deviation;
-  // Rounding of two neighbouring values of Φ must not make a mass negative.
+  // Rounding of two nearby values of Φ must not make the mass negative.
   const double mass = std::max(0.0, normal_probability(low, high));
   const double first = deviation * (normal_density(low) - normal_density(high));
   const double second =
@@ -29,9 +30,9 @@ double before_wall(double wall, double deviation, double t) {
   return std::clamp(mass - squares / (t * t) + rounding, 0.0, mass);
 }
 
-/// Adds the half-space with inner normal along `direction` that touches `box` from outside `mean`,
-/// if the direction separates them. A half-space that contains the obstacle is nearer than it, so
-/// its value is an upper bound.
+/// Adds the half-space with inner normal along `direction` whose boundary touches `box`, if the
+/// direction is non-zero and the offset finite. A half-space that contains the obstacle is at least
+/// as near as the obstacle, so its value is an upper bound.
 void add_separating_half_space(const Eigen::VectorXd& direction,
                                const Eigen::Ref<const Eigen::VectorXd>& mean,
                                const Eigen::Ref<const Eigen::MatrixXd>& covariance, const Box& box,
@@ -92,7 +93,8 @@ double soft_interval_probability(double mean, double deviation, double lower, do
     const double distance = std::max({lower - mean, mean - upper, 0.0});
     return std::max(0.0, 1.0 - distance * distance / (t * t));
   }
-  // Most points are far from most faces: both what is inside and what is within t of it is tail.
+  // Most points are far from most faces: then both the inside and the surrounding within t are in
+  // the tail.
   const double gap = std::max(lower - mean, mean - upper);
   if (gap - t > kTail * deviation) return 2.0 * kTailAllowance;
   const double inside = normal_probability((lower - mean) / deviation, (upper - mean) / deviation);
@@ -102,8 +104,8 @@ double soft_interval_probability(double mean, double deviation, double lower, do
 }
 
 // 1 − Σ_a d_a²/t² ≤ Π_a (1 − d_a²/t²)₊ where the left side is positive, and independent coordinates
-// factor. For correlated ones any single axis, and any half-space that contains the box,
-// serve.
+// factor. For correlated ones every single axis and every half-space that contains the box gives a
+// bound.
 SoftPart soft_part(const Eigen::Ref<const Eigen::VectorXd>& mean,
                    const Eigen::Ref<const Eigen::MatrixXd>& covariance, const Box& box) {
   SoftPart part{.intervals = {}, .independent = diagonal_on(covariance, box)};

@@ -11,7 +11,7 @@
 namespace qsmpc::controller {
 namespace {
 
-/// A sum of products of intervals, by vectors of centres: for coordinates that are independent.
+/// A sum of products over intervals, vectorised over the centres, for independent coordinates.
 class FactoredRegion final : public SoftRegion {
  public:
   explicit FactoredRegion(const GaussianCentres& centres)
@@ -20,7 +20,7 @@ class FactoredRegion final : public SoftRegion {
         highest_(centres.highest),
         covariance_(centres.covariance) {}
 
-  /// One more interval of the part at hand; `is_last` ends the part.
+  /// Adds an interval to the current part; `is_last` ends the part.
   void add_factor(Eigen::Index axis, double lower, double upper, bool is_last) {
     const double deviation = std::sqrt(std::max(0.0, covariance_(axis, axis)));
     factors_.push_back({.axis = axis,
@@ -34,7 +34,7 @@ class FactoredRegion final : public SoftRegion {
       std::size_t end = first;
       bool far = false;
       do {
-        // Both what is inside and what is within t of it is tail, of all centres.
+        // For every centre both the inside and the surrounding within t are in the tail.
         far = far || factors_[end].gap - t > kTail * factors_[end].interval.deviation;
       } while (!factors_[end++].is_last);
       if (far) {
@@ -51,8 +51,8 @@ class FactoredRegion final : public SoftRegion {
   struct Factor {
     Eigen::Index axis;
     SoftInterval interval;
-    double gap;    ///< least distance of a centre
-    bool is_last;  ///< of its part
+    double gap;    ///< least distance from a centre
+    bool is_last;  ///< in its part
   };
 
   void add_part(double t, std::size_t first, std::size_t end, Eigen::Index begin,
@@ -112,7 +112,7 @@ std::unique_ptr<const SoftRegion> soft_box(const Box& box, const GaussianCentres
   if (!diagonal_on(centres.covariance, box)) return std::make_unique<CorrelatedBox>(box, centres);
   auto region = std::make_unique<FactoredRegion>(centres);
   const std::vector<AxisInterval> intervals = bounded_axes(box);
-  // One that is everywhere has no axis of its own.
+  // A box that is the whole space has no bounded axis.
   if (intervals.empty()) region->add_factor(0, -kInfinity, kInfinity, true);
   for (const AxisInterval& interval : intervals) {
     region->add_factor(interval.axis, interval.lower, interval.upper,

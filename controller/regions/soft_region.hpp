@@ -1,4 +1,4 @@
-// Walls and boxes as many Gaussians of one covariance see them, for bound C2.
+// Walls and boxes prepared for many Gaussians of one covariance, for bound C2.
 #pragma once
 
 #include <memory>
@@ -8,12 +8,12 @@
 
 namespace qsmpc::controller {
 
-/// What is at or beyond a finite end of `bounds`, as the sum over the half-spaces. Refers to the
-/// centres.
+/// The region at or beyond the finite ends of `bounds`, as the sum over the half-spaces. Keeps a
+/// reference to the centres.
 [[nodiscard]] std::unique_ptr<const SoftRegion> soft_walls(const Box& bounds,
                                                            const GaussianCentres& centres);
 
-/// A closed box. Refers to both.
+/// A closed box. Keeps references to both arguments.
 [[nodiscard]] std::unique_ptr<const SoftRegion> soft_box(const Box& box,
                                                          const GaussianCentres& centres);
 

@@ -1,5 +1,5 @@
-// A smooth stand-in for the probability that a Gaussian is in a region, for optimisation: it has a
-// useful slope of its logarithm far away and deep inside alike. Derivation:
+// A smooth substitute for the probability that a Gaussian is in a region, for optimisation: the
+// slope of its logarithm is useful both far away and deep inside. Derivation:
 // docs/theory/planning.md, "Risk".
 #pragma once
 
@@ -12,14 +12,16 @@
 namespace qsmpc::controller {
 
 /// Φ(−z), continued below z = 0, where Φ(−z) is flat, by the exponential with the same value and
-/// slope. So it exceeds 1 deep inside of a region: a merit there, and no probability.
+/// slope. It therefore exceeds 1 deep inside a region, where it is a merit function and not a
+/// probability.
 [[nodiscard]] double extended_tail(double z);
 
 /// Σ over parts of extended_tail(z), z being the number of standard deviations between the mean and
 /// the part's nearest point; negative inside.
 class TailSum {
  public:
-  /// Nothing yet, for laws of `dim` coordinates. Allocates only for another dimension than before.
+  /// Resets the sum to zero, for laws of `dim` coordinates. Allocates only if the dimension
+  /// changes.
   void clear(Eigen::Index dim);
 
   /// Adds a part. slope: ∂z/∂mean in the coordinates `axes`; ∂z/∂covariance follows from it, as
@@ -29,7 +31,7 @@ class TailSum {
 
   [[nodiscard]] double value() const { return value_; }
   [[nodiscard]] const Eigen::VectorXd& by_mean() const { return by_mean_; }
-  /// Symmetric, each entry's derivative as if it alone changed.
+  /// Symmetric; the derivative by each entry is taken as if that entry alone changed.
   [[nodiscard]] const Eigen::MatrixXd& by_covariance() const { return by_covariance_; }
 
  private:

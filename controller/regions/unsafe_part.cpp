@@ -3,7 +3,7 @@
 namespace qsmpc::controller {
 namespace {
 
-/// Whether a disc's centre, at `state`, is in one of these regions.
+/// Whether the disc's centre at `state` is in one of these regions.
 template <class Regions>
 bool in_any(const DiscView& disc, const Regions& regions,
             const Eigen::Ref<const Eigen::VectorXd>& state, Eigen::Index stage) {

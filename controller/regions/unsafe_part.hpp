@@ -10,9 +10,9 @@
 namespace qsmpc::controller {
 
 enum class UnsafePart {
-  kNone,      ///< it is safe
-  kBounds,    ///< a disc of the body is outside of the bounds or the road, or touches their edges
-  kObstacle,  ///< one is in an obstacle or touches it, whether within the bounds or not
+  kNone,      ///< the state is safe
+  kBounds,    ///< a disc of the body is outside the bounds or the road, or touches their edges
+  kObstacle,  ///< a disc is in an obstacle or touches it, whether within the bounds or not
 };
 
 /// The part that the body at `state` (state_dim) is in at `stage`, 0 being the present; kNone

@@ -1,8 +1,8 @@
-// A part of the unsafe set, and what planning, certification and drawing ask of it. A shape is a
-// class that answers, and a line in the table of shapes (unsafe_set.hpp).
+// A part of the unsafe set: the queries that planning, certification and drawing make. A new shape
+// takes a class that implements them and a line in the table of shapes (unsafe_set.hpp).
 //
-// Every question takes the stage, 0 being the present, so that regions may move. Regions are
-// closed: touching one is unsafe.
+// Every query takes the stage, 0 being the present, so that regions may move. Regions are closed:
+// touching one is unsafe.
 #pragma once
 
 #include <functional>
@@ -21,32 +21,32 @@
 
 namespace qsmpc::controller {
 
-/// Particles that a penalty is taken at, and what it is like: scale · h(signed distance / length),
-/// with h of planning/cost/penalty.hpp.
+/// Particles at which a penalty is evaluated, and its parameters: the penalty is scale · h(signed
+/// distance / length), with h of planning/cost/penalty.hpp.
 struct PenaltyBatch {
   const Points& locations;         ///< state_dim x n
   const Eigen::VectorXd& weights;  ///< n
-  ParticleRange range;             ///< those that are meant
+  ParticleRange range;             ///< the particles to evaluate
   double scale = 1.0;
   double length = 1.0;  ///< > 0
   Points& adjoint;      ///< state_dim x n
 };
 
-/// The state as bounds C3 and C4 know it (docs/theory/surrogate.md): z + e with z ~ law.
+/// The state in bounds C3 and C4 (docs/theory/surrogate.md): z + e with z ~ law.
 struct SurrogateLaw {
   const Gaussian& law;
   const Eigen::VectorXd& error;  ///< bounds of √E e_a², state_dim
   const HigherNorms& higher;     ///< bounds of ‖e_a‖_p for p in kHigherOrders
-  /// Covariance of a part of z that is independent of z less it and of e's given coordinates.
+  /// Covariance of a part n of z that is independent of z − n and of e in the given coordinates.
   const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>& axes)>& smoothing;
-  /// What a bound that is no more need not be worked out further.
+  /// A bound at or below this value need not be refined.
   double worthwhile = 0.0;
 };
 
-/// Upper bounds of probabilities, to which each region adds its own.
+/// Upper bounds of probabilities; each region adds its own.
 struct RegionProbability {
   double markov = 0.0;  ///< C3
-  double smooth = 0.0;  ///< C4; what a region adds is never above what it adds to C3
+  double smooth = 0.0;  ///< C4; a region never adds more to it than to C3
 
   RegionProbability& operator+=(const RegionProbability& other) {
     markov += other.markov;
@@ -61,7 +61,7 @@ struct HalfSpace {
   double offset = 0.0;
 };
 
-/// Signed distances of points, with their derivatives: unit vectors that lead away fastest.
+/// Signed distances of points and their gradients: unit vectors of steepest increase.
 struct NearestFaces {
   Eigen::ArrayXd distance;  ///< n
   Points slope;             ///< state_dim x n
@@ -71,44 +71,45 @@ struct NearestFaces {
 struct GaussianCentres {
   const Points& centres;  ///< state_dim x n, all finite
   const Eigen::MatrixXd& covariance;
-  const Eigen::VectorXd& lowest;   ///< of the centres, coordinate by coordinate
-  const Eigen::VectorXd& highest;  ///< the same
+  const Eigen::VectorXd& lowest;   ///< minimum over the centres, by coordinate
+  const Eigen::VectorXd& highest;  ///< maximum over the centres, by coordinate
 };
 
-/// A region as Gaussians about some centres see it: what does not depend on the reach t.
+/// A region prepared for Gaussians about given centres: everything that does not depend on the
+/// reach t.
 class SoftRegion {
  public:
   virtual ~SoftRegion() = default;
-  /// Adds at least E(1 − d(y_i, region)²/t²)₊, y_i about centre begin + i, to totals[i], i < count
-  /// ≤ kSoftBlock. t > 0.
+  /// Adds an upper bound of E(1 − d(y_i, region)²/t²)₊ to totals[i] for each i < count ≤
+  /// kSoftBlock, y_i being the Gaussian about centre begin + i. t > 0.
   virtual void add(double t, Eigen::Index begin, Eigen::Index count, double* totals) const = 0;
 };
 
-/// The most centres that a SoftRegion is asked about at once.
+/// The largest number of centres in one call of SoftRegion::add.
 inline constexpr Eigen::Index kSoftBlock = 64;
 
 /// A region in the plane of two coordinates, for drawing.
 struct Outline {
-  Eigen::Matrix2Xd corners;        ///< of a polygon, in turn; entries may be infinite
-  bool unsafe_inside = true;       ///< else what is outside is unsafe
-  bool depends_on_others = false;  ///< whether it is unsafe for some of the other coordinates only
+  Eigen::Matrix2Xd corners;        ///< of a polygon, in order; entries may be infinite
+  bool unsafe_inside = true;       ///< otherwise the outside is unsafe
+  bool depends_on_others = false;  ///< whether it is unsafe only for some values of the others
 };
 
 class UnsafeRegion {
  public:
   virtual ~UnsafeRegion() = default;
 
-  /// Euclidean distance to the region outside of it; inside, minus the least distance that leads
-  /// out. For C1 and C2 this is the distance that an error has to bridge.
+  /// Outside the region, the Euclidean distance to it; inside, minus the least distance out of it.
+  /// For C1 and C2 this is the distance that an error has to bridge.
   [[nodiscard]] virtual double signed_distance(
       Eigen::Index stage, const Eigen::Ref<const Eigen::VectorXd>& point) const = 0;
-  /// Lowers least[i] to the signed distance of points.col(i) where that is less. What is lowered
-  /// for a point that is not finite is not specified.
+  /// Lowers least[i] to the signed distance of points.col(i) where that is less. The result for a
+  /// point that is not finite is unspecified.
   virtual void lower_to_distances(Eigen::Index stage, const Points& points,
                                   Eigen::ArrayXd& least) const = 0;
 
-  /// The same with the derivatives, which are overwritten where a distance is lowered. On an edge
-  /// or in a middle, where there are several, it is one of them.
+  /// The same with the gradients, which are overwritten where a distance is lowered. Where the
+  /// gradient is not unique, at an edge or midway between faces, it is one of those possible.
   virtual void lower_to_faces(Eigen::Index stage, const Points& points,
                               NearestFaces& nearest) const = 0;
 
@@ -118,25 +119,26 @@ class UnsafeRegion {
   /// Adds upper bounds of P(z + e in the region).
   virtual void add_probability(Eigen::Index stage, const SurrogateLaw& state,
                                RegionProbability& sum) const = 0;
-  /// Adds the tails of the region's convex parts: smooth, for optimisation, and no bound.
+  /// Adds the tails of the region's convex parts: smooth, for optimisation; not a bound.
   virtual void add_tail(Eigen::Index stage, const Gaussian& law, TailSum& sum) const = 0;
-  /// At least E(1 − d(y, region)²/t²)₊ for y ~ N(mean, covariance); t > 0. It may be the sum over
-  /// parts, and more than 1.
+  /// An upper bound of E(1 − d(y, region)²/t²)₊ for y ~ N(mean, covariance); t > 0. It may be a sum
+  /// over parts and exceed 1.
   [[nodiscard]] virtual double soft_probability(Eigen::Index stage,
                                                 const Eigen::Ref<const Eigen::VectorXd>& mean,
                                                 const Eigen::Ref<const Eigen::MatrixXd>& covariance,
                                                 double t) const = 0;
-  /// The same for many; refers to the region and the centres.
+  /// The same for many centres; the result keeps references to the region and the centres.
   [[nodiscard]] virtual std::unique_ptr<const SoftRegion> soften(
       Eigen::Index stage, const GaussianCentres& centres) const = 0;
 
-  /// Half-spaces that together hold the region: its own where it is made of such, else the one with
-  /// the normal `towards` (state_dim). As many at every stage, in the same order; none at one where
-  /// no direction ends the region, or where it is uncertain where it is.
+  /// Half-spaces whose union contains the region: its own if it consists of half-spaces, otherwise
+  /// the one with the normal `towards` (state_dim). Their number and order are the same at every
+  /// stage, except that there are none at a stage at which no such half-space contains the region
+  /// or its place is uncertain.
   [[nodiscard]] virtual std::vector<HalfSpace> half_space_cover(
       Eigen::Index stage, const Eigen::Ref<const Eigen::VectorXd>& towards) const = 0;
 
-  /// In the plane of coordinates x and y, -1 standing for one that the system lacks.
+  /// Outline in the plane of coordinates x and y; -1 stands for a coordinate that the system lacks.
   [[nodiscard]] virtual Outline outline(Eigen::Index stage, Eigen::Index x,
                                         Eigen::Index y) const = 0;
 };

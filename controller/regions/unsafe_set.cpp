@@ -12,7 +12,7 @@
 namespace qsmpc::controller {
 namespace {
 
-/// `box` in its position alone.
+/// `box` restricted in position only.
 Box of_position(Box box, const Body& body) {
   for (Eigen::Index axis = 0; axis < box.lower.size(); ++axis) {
     if (axis == body.x || axis == body.y) continue;
@@ -116,7 +116,7 @@ Eigen::VectorXd clearances(const Points& states, const UnsafeSet& unsafe, Eigen:
       region->lower_to_distances(stage, centres, least);
     }
   }
-  // What is not a number is not safe; minima may have lost it.
+  // States that are not finite are unsafe; the minima may have dropped a NaN.
   for (const auto& x : states.rowwise()) {
     least = (x.transpose().array().isFinite()).select(least, -kInfinity);
   }

@@ -24,10 +24,10 @@ namespace qsmpc::controller {
 using RegionPointer = std::shared_ptr<const UnsafeRegion>;
 
 /// A disc that must not touch a region: its centre must not come nearer than the radius, in the
-/// plane of position. Coordinates that are no position are as they were.
+/// plane of position. Other coordinates do not grow.
 struct Growth {
   double radius = 0.0;  ///< m
-  // Indices of states; -1 where the system has none.
+  // State indices; -1 if the system has no such state.
   int x = -1;
   int y = -1;
 
@@ -36,11 +36,12 @@ struct Growth {
   }
 };
 
-/// One shape; a new one is a file with a class, and a line in the table.
+/// An entry of the table of shapes. A new shape takes a file with its class and a line in the
+/// table.
 struct ShapeEntry {
   std::string name;
   std::string summary;
-  /// The region of this shape that intervals of the coordinates say, grown.
+  /// Makes the region of this shape for the given intervals of the coordinates, grown by `growth`.
   RegionPointer (*make)(const Box& intervals, const Growth& growth) = nullptr;
 };
 
@@ -51,25 +52,26 @@ struct ShapeEntry {
 [[nodiscard]] RegionPointer make_region(std::string_view shape, const Box& intervals,
                                         const Growth& growth = {});
 
-/// The unsafe set as one disc of the body meets it: the body is unsafe where any disc's centre is
-/// in one of its regions.
+/// The unsafe set as seen by one disc of the body: the body is unsafe if the centre of any disc is
+/// in one of that disc's regions.
 struct DiscView {
   DiscPlacement placement;
-  /// Of the centre; the walls first, then what is outside of the road if there is one. What
-  /// restricts no position belongs to the first disc alone, so that nothing is counted twice.
+  /// Unsafe regions for the disc's centre: the walls, then the outside of the road if there is one,
+  /// then the obstacles. Regions that do not restrict position belong to the first disc only, so
+  /// that nothing is counted twice.
   std::vector<RegionPointer> regions;
-  std::size_t limits = 1;  ///< how many of them bound the safe set: the walls, and the road's
-  /// The bounds of the centre that the walls are made of; lower > upper where the disc has no room.
+  std::size_t limits = 1;  ///< how many of them bound the safe set: the walls and any road
+  /// Bounds on the centre from which the walls are made; lower > upper where the disc does not fit.
   Box bounds;
 
-  /// The walls, and the road's.
+  /// The walls and the region outside the road, if there is one.
   [[nodiscard]] std::span<const RegionPointer> borders() const {
     return std::span(regions).first(limits);
   }
   [[nodiscard]] std::span<const RegionPointer> obstacles() const {
     return std::span(regions).subspan(limits);
   }
-  /// All but the walls.
+  /// All regions except the walls.
   [[nodiscard]] std::span<const RegionPointer> within_walls() const {
     return std::span(regions).subspan(1);
   }
@@ -78,7 +80,7 @@ struct DiscView {
 /// The complement of a safe set. Copies share their regions.
 class UnsafeSet {
  public:
-  /// Whoever asks often should keep one. Throws std::invalid_argument as check_safe_set.
+  /// Keep the object if it is queried often. Throws std::invalid_argument as check_safe_set does.
   // NOLINTNEXTLINE(google-explicit-constructor): it is the same set, in the words of its regions
   UnsafeSet(const SafeSet& safe_set);
 
@@ -86,21 +88,21 @@ class UnsafeSet {
   /// The safe set's bounds.
   [[nodiscard]] const Box& bounds() const { return bounds_; }
   [[nodiscard]] const Body& body() const { return body_; }
-  /// The body's discs; one of radius 0 at the position where it is a point.
+  /// The body's discs; a single one of radius 0 at the position if the body is a point.
   [[nodiscard]] const std::vector<DiscView>& discs() const { return discs_; }
-  /// |o| of the disc that is farthest from the position, m.
+  /// Largest offset |o| of a disc from the position, m.
   [[nodiscard]] double reach() const { return reach_; }
-  /// Whether it is known for certain where everything is at a stage.
+  /// Whether the places of all obstacles at a stage are known with certainty.
   [[nodiscard]] bool is_certain(Eigen::Index stage) const {
     return !forecast_ || forecast_->is_certain(stage);
   }
-  /// How far a disc's centre moves at most for a unit of the state.
+  /// Lipschitz constant of the map from the state to a disc's centre, the largest of all discs.
   [[nodiscard]] double lipschitz() const { return lipschitz_; }
 
-  // What stands in the way, whatever the body is: for drawing.
-  /// The region outside of the bounds.
+  // For drawing: the regions themselves, independent of the body.
+  /// The region outside the bounds.
   [[nodiscard]] const UnsafeRegion& walls() const { return *regions_.front(); }
-  /// All but the walls and the road's.
+  /// All regions except the walls and the outside of the road.
   [[nodiscard]] std::span<const RegionPointer> obstacles() const {
     return std::span(regions_).subspan(limits_);
   }
@@ -118,13 +120,13 @@ class UnsafeSet {
   double lipschitz_ = 1.0;
 };
 
-/// Distance of the body to the unsafe set where it is safe; else minus the depth: the least
-/// distance that leads a disc out of the region it is in, or back into the bounds. Reports use it
-/// as the clearance. −infinity where a coordinate is not finite.
+/// Distance from the body to the unsafe set if the body is safe; otherwise minus the depth, the
+/// least distance that takes a disc out of the region it is in, or back into the bounds. Reports
+/// use it as the clearance. −infinity where a coordinate is not finite.
 [[nodiscard]] double clearance(const Eigen::Ref<const Eigen::VectorXd>& state,
                                const UnsafeSet& unsafe, Eigen::Index stage = 0);
 
-/// Distance of the body to the unsafe set: 0 in it (docs/theory/certificates.md; the thesis's
+/// Distance from the body to the unsafe set: 0 inside it (docs/theory/certificates.md; the thesis's
 /// Algorithm 3 takes a norm over the dimensions instead, which overestimates, and leaves the
 /// obstacles out).
 [[nodiscard]] double distance_to_unsafe(const Eigen::Ref<const Eigen::VectorXd>& state,
@@ -134,16 +136,16 @@ class UnsafeSet {
 [[nodiscard]] Eigen::VectorXd clearances(const Points& states, const UnsafeSet& unsafe,
                                          Eigen::Index stage = 0);
 
-/// What `clearances_with_slopes` works on, so that the next call allocates nothing.
+/// Scratch of `clearances_with_slopes`; reused, it makes the next call allocation-free.
 struct ClearanceScratch {
   NearestFaces of_disc;
   Points centres;
   Points slopes;
 };
 
-/// The clearances of all states (dim x n) with their derivatives by the states, written to `out`,
-/// whose storage is reused; +infinity, and a slope of 0, where nothing is unsafe. What it writes
-/// for states that are not finite is not specified.
+/// Writes the clearances of all states (dim x n) and their derivatives by the states to `out`,
+/// whose storage is reused; +infinity with a slope of 0 where nothing is unsafe. The results for
+/// states that are not finite are unspecified.
 void clearances_with_slopes(const Points& states, const UnsafeSet& unsafe, Eigen::Index stage,
                             ClearanceScratch& scratch, NearestFaces& out);
 

@@ -10,15 +10,15 @@
 
 namespace qsmpc::controller {
 
-/// What weights are worked out in, so that the next one allocates nothing.
+/// Scratch of unsafe_weight; reused, it makes the next call allocation-free.
 struct UnsafeWeightScratch {
   Points centres;               ///< of a disc, dim x n
   Eigen::VectorXd centre;       ///< dim
   std::vector<char> is_unsafe;  ///< n
 };
 
-/// The weight of the points of `measure` (dim x n) that are unsafe, by the body, from 0 to 1: the
-/// probability that the measure gives to the unsafe set.
+/// The total weight, from 0 to 1, of the points of `measure` (dim x n) at which the body is unsafe:
+/// the measure's probability of the unsafe set.
 [[nodiscard]] double unsafe_weight(const DiscreteMeasure& measure, const UnsafeSet& unsafe,
                                    Eigen::Index stage, UnsafeWeightScratch& workspace);
 

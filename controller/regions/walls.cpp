@@ -1,4 +1,4 @@
-// The walls: everything outside of the safe set's bounds.
+// The walls: everything outside the safe set's bounds.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ class Walls final : public UnsafeRegion {
   explicit Walls(const Box& bounds)
       : bounds_(bounds), intervals_(bounded_axes(bounds)), parts_(half_spaces(bounds)) {}
 
-  // Inside the bounds the depth is the distance to the nearest face; outside, minus the distance.
+  // Inside the bounds, the distance to the nearest face; outside, minus the distance to the bounds.
   [[nodiscard]] double signed_distance(
       Eigen::Index /*stage*/, const Eigen::Ref<const Eigen::VectorXd>& point) const override {
     const double depth = depth_in_box(point, bounds_);

@@ -10,7 +10,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// Of a measurement less what was expected, m²: below it, it says nothing.
+// Innovation variance, m², below which a measurement carries no information.
 constexpr double kNoVariance = 1e-24;
 
 }  // namespace
@@ -38,8 +38,8 @@ void MotionFilter::begin() {
   }
 }
 
-// What is seen has the same deviation in every direction, so the filters of the two directions stay
-// independent of each other.
+// The measurement noise has the same deviation in every direction, so the filters of the two
+// directions stay independent of each other.
 void MotionFilter::see(const Eigen::Vector2d& offset) {
   if (!offset.allFinite()) throw std::invalid_argument("motion filter: a finite offset");
   const double noise = motion_.seen_deviation * motion_.seen_deviation;

@@ -1,6 +1,5 @@
-// What is known of an obstacle that moves: exactly the law of its place given what was seen of it,
-// as a Kalman filter for each way that it may intend, and the probabilities of the ways
-// (docs/theory/motion.md).
+// The exact law of a moving obstacle's place given the measurements of it: a Kalman filter for each
+// way that it may intend to go, and the probabilities of the ways (docs/theory/motion.md).
 //
 //   MotionFilter filter(motion, 0.1);
 //   filter.begin();
@@ -23,24 +22,25 @@ namespace qsmpc::controller {
 
 class MotionFilter {
  public:
-  /// time_step: of a period, s. Throws std::invalid_argument as check_obstacle_motion, and on a
-  /// time step that is not above 0.
+  /// time_step: length of a period, s. Throws std::invalid_argument as check_obstacle_motion, and
+  /// unless time_step > 0.
   MotionFilter(models::ObstacleMotion motion, double time_step);
 
-  /// The beginning of a drive: what the motion says, with nothing seen.
+  /// Resets to the beginning of a drive: the prior of the motion, without measurements.
   void begin();
-  /// Takes in a measurement of the offset now. Throws std::invalid_argument where it is not finite.
+  /// Updates with a measurement of the current offset. Throws std::invalid_argument where it is not
+  /// finite.
   void see(const Eigen::Vector2d& offset);
-  /// One period on.
+  /// Advances by one period.
   void advance();
 
-  /// For stages 0 (now) … `stages`.
+  /// The forecast for stages 0 (now) … `stages`.
   [[nodiscard]] PlacesByStage forecast(int stages) const;
-  /// Of each way, given what was seen; they add up to 1.
+  /// Probability of each way given the measurements; they sum to 1.
   [[nodiscard]] std::vector<double> probabilities() const;
 
  private:
-  /// Of the deviation and its rate in one direction.
+  /// Law of the deviation and its rate in one direction.
   struct Deviation {
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();

@@ -1,6 +1,6 @@
-// Where the obstacles that move will be, as far as it is known now: for each stage of the horizon a
-// mixture of Gaussians. Regions of an unsafe set read it whenever they are asked, so whoever owns a
-// drive writes it anew between the periods (docs/theory/motion.md).
+// A forecast of the moving obstacles' places: a mixture of Gaussians for each stage of the horizon.
+// Regions of an unsafe set read it on every query, so the owner of a drive rewrites it between
+// periods (docs/theory/motion.md).
 //
 //   auto forecast = std::make_shared<ObstacleForecast>(1);
 //   safe_set.forecast = forecast;            // before controllers are made of it
@@ -17,36 +17,38 @@
 
 namespace qsmpc::controller {
 
-/// One of the ways in which an obstacle may be moved at a stage: turned about the centre of its
-/// shape by an angle that is known, and offset by a vector that is Gaussian.
+/// One possible displacement of an obstacle at a stage: a rotation by a known angle about the
+/// centre of its shape, and a Gaussian offset.
 struct ObstaclePlace {
-  double weight = 1.0;                               ///< probability of this one
-  Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< mean, m, from where the shape is written
+  double weight = 1.0;                               ///< probability of this displacement
+  Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< mean, m, from where the shape is defined
   double turn = 0.0;                                 ///< rad
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of the offset, m²
 };
 
-/// One obstacle at all stages, 0 being the present: the same number of places each.
+/// One obstacle at all stages, 0 being the present; the number of places is the same at each.
 using PlacesByStage = std::vector<std::vector<ObstaclePlace>>;
 
-/// Reading from several threads at the same time is safe while nobody writes.
+/// Concurrent reads are safe while nobody writes.
 class ObstacleForecast {
  public:
-  /// Of `obstacles` that stand where they are written until more is known.
+  /// A forecast of `obstacles` obstacles, which stay where they are defined until `set` is called.
   explicit ObstacleForecast(std::size_t obstacles) : places_(obstacles, {{ObstaclePlace{}}}) {}
 
   [[nodiscard]] std::size_t size() const { return places_.size(); }
 
-  /// Weights add up to 1. Beyond the last stage that is known, those of the last.
+  /// The places of an obstacle at a stage; weights sum to 1. Beyond the last known stage, those of
+  /// the last.
   [[nodiscard]] std::span<const ObstaclePlace> at(std::size_t obstacle, Eigen::Index stage) const;
-  /// That of the greatest weight.
+  /// The place of greatest weight.
   [[nodiscard]] const ObstaclePlace& likeliest(std::size_t obstacle, Eigen::Index stage) const;
-  /// All stages that are known, at least one.
+  /// All known stages, at least one.
   [[nodiscard]] const PlacesByStage& of(std::size_t obstacle) const { return places_[obstacle]; }
-  /// Whether it is known for certain where all obstacles are at a stage.
+  /// Whether the places of all obstacles at a stage are certain.
   [[nodiscard]] bool is_certain(Eigen::Index stage) const;
 
-  /// Throws std::invalid_argument on no stages, or a stage without places.
+  /// Sets an obstacle's places. Throws std::invalid_argument if there are no stages, or a stage has
+  /// no places.
   void set(std::size_t obstacle, PlacesByStage places);
 
  private:

@@ -12,7 +12,7 @@ import sys
 import casadi
 import numpy
 
-# m: how round distances are where the nearest side of a box changes. They are never too large.
+# m: rounding of distances where a box's nearest side changes. Distances are never overestimated.
 ROUNDING = 0.05
 
 
@@ -170,7 +170,7 @@ class Problem:
     def gains(self, path, inputs):
         """Gains by which a linear-quadratic regulator follows a path: m × n for each stage."""
         effort = self.options.get("feedback_effort", 1.0)
-        # The cost has ½ before the states' weights only.
+        # In the cost, only the states' weights carry a factor ½.
         cost_to_go = 2.0 * self.cost["terminal"]
         weight = 2.0 * effort * self.cost["input"]
         gains = []
@@ -245,7 +245,7 @@ def serve(make):
     end. A controller has ``reset(seed)`` and ``plan(situation)``, which returns a plan's dict."""
 
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what solvers print is no answer
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # output of solvers must not reach stdout
 
     def answer(message):
         print(json.dumps(message), file=answers, flush=True)

@@ -48,7 +48,7 @@ class ScenarioMpc:
         problem = self.problem
         shape = (self.samples // 2, problem.horizon + 1, problem.state_dim)
         half = numpy.random.default_rng(seed).standard_normal(shape)
-        self.normal = self.spread * numpy.concatenate([half, -half])  # no mean
+        self.normal = self.spread * numpy.concatenate([half, -half])  # zero mean
         self.inputs = numpy.zeros((problem.horizon, problem.input_dim))
         self.multipliers = None
 
@@ -75,7 +75,7 @@ class ScenarioMpc:
             "g": casadi.vec(clearances + slacks),
             "p": casadi.vertcat(target, mean, casadi.vec(gains), casadi.vec(draws)),
         }
-        # As many solves as guesses in the first period, within the deadline.
+        # In the first period there are as many solves as guesses, within the deadline.
         share = 0.8 / (1 + 2 * m)
         ipopt = {
             "print_level": 0,
@@ -155,7 +155,7 @@ class ScenarioMpc:
             [
                 problem.target_near(mean),
                 mean,
-                # CasADi's matrices go down their columns.
+                # CasADi's matrices are column-major.
                 numpy.concatenate([gain.ravel("F") for gain in gains]),
                 draws.reshape(self.samples, -1).ravel(),
             ]
@@ -168,7 +168,7 @@ class ScenarioMpc:
             inputs, self.multipliers = guesses[0], None
         else:
             self.multipliers = result["lam_x"], result["lam_g"]
-        # The solver ends a little beyond the bounds.
+        # The solver's solution may exceed the bounds slightly.
         self.inputs = numpy.clip(inputs, problem.lower, problem.upper)
         return {
             "inputs": self.inputs.tolist(),

@@ -1,5 +1,5 @@
-// Model predictive control of the car of constant speed, without qsmpc: projected Gauss–Newton
-// steps on the turn rates along the noise-free path, with penalties near the blocks.
+// Model predictive control of the constant-speed car without qsmpc's planner: projected
+// Gauss–Newton steps on the turn rates along the noise-free path, with penalties near the blocks.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kMostSteps = 30;
-constexpr double kSettled = 1e-6;  // relative gain of a step that is the last
+constexpr double kSettled = 1e-6;  // relative gain below which a step is the last
 constexpr double kDamping = 1e-3;
 constexpr double kDifference = 1e-6;  // rad/s, of a finite difference
 
@@ -47,7 +47,7 @@ class Mpc {
   }
 
  private:
-  /// The best of what is found from turns to either side: there are two ways round a block.
+  /// The best result from initial turns to either side: there are two ways around a block.
   VectorXd first_turns(const VectorXd& start, int& evaluations) const {
     VectorXd best;
     for (const double turn : {-1.0, 0.0, 1.0}) {
@@ -88,7 +88,7 @@ class Mpc {
     return turns;
   }
 
-  /// Of which the sum of squares is the cost.
+  /// Residuals, the sum of whose squares is the cost.
   [[nodiscard]] VectorXd residuals(const VectorXd& start, const VectorXd& turns) const {
     std::vector<double> all;
     VectorXd state = start;
@@ -107,10 +107,10 @@ class Mpc {
     return Eigen::Map<const VectorXd>(all.data(), static_cast<Index>(all.size()));
   }
 
-  /// Of every obstacle, and of every side of the bounds.
+  /// Penalties of every obstacle and every side of the bounds.
   [[nodiscard]] VectorXd penalties(const VectorXd& state) const {
     constexpr double kMargin = 0.6;    // m
-    constexpr double kWeight = 400.0;  // the root of what a metre squared costs
+    constexpr double kWeight = 400.0;  // the square root of the cost per square metre
     const auto obstacles = problem_.obstacle_lower().rows();
     VectorXd values(obstacles + 4);
     for (Index i = 0; i < obstacles; ++i) {

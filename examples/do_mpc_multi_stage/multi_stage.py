@@ -16,7 +16,7 @@ import sys
 import casadi
 import numpy
 
-# What scenarios are in CasADi's expressions is the same for both examples.
+# Both examples share the scenario in CasADi expressions.
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "casadi_scenario_mpc"))
 
 import do_mpc  # noqa: E402
@@ -29,12 +29,13 @@ class MultiStageMpc:
     def __init__(self, problem):
         self.problem = problem
         n = problem.state_dim
-        # Held over the horizon, three deviations of what the noise adds up to until its end.
+        # Held over the horizon, they add up to three deviations of the accumulated noise at its
+        # end.
         deviations = problem.options.get("deviations", 3.0 / math.sqrt(problem.horizon))
         values, vectors = numpy.linalg.eigh(problem.noise)
         root = deviations * vectors * numpy.sqrt(numpy.maximum(values, 0.0))
         axes = [axis for axis in root.T if axis.any()]
-        # None at first: the plan that is answered is that of this branch.
+        # The first branch has no noise: the answered plan is the plan of this branch.
         self.noises = [numpy.zeros(n), *axes, *(-axis for axis in axes)]
         self.mpc = self.build(problem.options.get("weight", WEIGHT))
         self.later = self.later_places()
@@ -56,7 +57,7 @@ class MultiStageMpc:
         model.set_variable("_tvp", "target", (n, 1))
         model.set_rhs("x", problem.step(state, control) + noise)
         model.setup()
-        # Set up, the model has other symbols.
+        # After setup the model has new symbols.
         state, control, noise = model.x["x"], model.u["u"], model.p["w"]
         target = model.tvp["target"]
         following = problem.step(state, control) + noise
@@ -70,13 +71,14 @@ class MultiStageMpc:
             lterm=problem.stage_cost(state, control, target),
             mterm=problem.terminal_cost(state, target),
         )
-        mpc.set_rterm(u=numpy.zeros(m))  # the cost is that of the scenario
+        mpc.set_rterm(u=numpy.zeros(m))  # no further cost than the scenario's
         mpc.bounds["lower", "_u", "u"], mpc.bounds["upper", "_u", "u"] = (
             problem.lower,
             problem.upper,
         )
         if problem.clearance.numel_out(0):
-            # Of where the step leads to: do-mpc holds constraints at the nodes that steps begin at.
+            # At the step's end point: do-mpc applies constraints at the nodes from which steps
+            # start.
             unsafe_by = -problem.clearance(following)
             mpc.set_nl_cons(
                 "unsafe_by", unsafe_by, ub=0.0, soft_constraint=True, penalty_term_cons=weight
@@ -88,11 +90,11 @@ class MultiStageMpc:
         self.targets = mpc.get_tvp_template()
         mpc.set_tvp_fun(lambda now: self.targets)
         mpc.setup()
-        mpc.set_initial_guess()  # that there is one; `guess` says which
+        mpc.set_initial_guess()  # any guess, as do-mpc requires one; `guess` sets the actual one
         return mpc
 
     def solver_options(self):
-        # As many solves as guesses in the first period, within the deadline.
+        # In the first period there are as many solves as guesses, within the deadline.
         share = 0.8 / (1 + 2 * self.problem.input_dim)
         return {
             "print_time": False,
@@ -175,7 +177,7 @@ class MultiStageMpc:
         if self.inputs is None:
             evaluations = self.solve_anew(mean)
         else:
-            # The tree before, a stage on, with its multipliers.
+            # The previous tree, shifted by one stage, with its multipliers.
             variables = self.mpc.opt_x_num
             variables.master = variables.master[self.later]
             self.solve(mean)
@@ -184,7 +186,7 @@ class MultiStageMpc:
         inputs = numpy.array([self.mpc.opt_x_num["_u", k, 0].full().ravel() for k in stages])
         if not numpy.isfinite(inputs).all():
             raise RuntimeError(f"IPOPT: {self.mpc.solver_stats['return_status']}, with no inputs")
-        # The solver ends a little beyond the bounds.
+        # The solver's solution may exceed the bounds slightly.
         self.inputs = numpy.clip(inputs, problem.lower, problem.upper)
         gains = problem.gains(problem.roll_out(mean, self.inputs), self.inputs)
         return {

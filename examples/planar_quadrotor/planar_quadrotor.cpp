@@ -1,4 +1,4 @@
-// A quadrotor in a vertical plane: two rotors push along its upward axis, and turn it by their
+// A quadrotor in a vertical plane: two rotors push along its upward axis and turn it by their
 // difference.
 #include <cmath>
 

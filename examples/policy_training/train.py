@@ -14,7 +14,7 @@ import qsmpc.envs  # registers the environments
 POPULATION = 32
 BEST = 6
 SPREAD = 1.0  # of the first round's weights
-DRIVES = 6  # that a candidate is judged by
+DRIVES = 6  # per evaluation of a candidate
 
 
 class LinearPolicy:

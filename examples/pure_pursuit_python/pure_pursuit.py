@@ -9,7 +9,7 @@ import sys
 
 
 def answer(message):
-    # flush: qsmpc waits for the line, which must not stay in a buffer.
+    # flush: qsmpc waits for the line, so it must not stay in a buffer.
     print(json.dumps(message), flush=True)
 
 
@@ -43,7 +43,7 @@ def main():
         if message["type"] == "end":
             break
         if message["type"] != "situation":
-            continue  # a new drive: nothing is remembered of the last one
+            continue  # a new drive: there is no state to carry over
         x, y, heading = message["observation"]
         goal = point_ahead(path, (x, y), lookahead)
         distance = max(math.dist(goal, (x, y)), 0.1)

@@ -1,4 +1,4 @@
-// Numbers of points that a scenario leaves to the program.
+// Numbers of points that a scenario leaves to the program to choose.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@
 
 namespace qsmpc::harness {
 
-/// Where `controller.quantisation` has a tolerance: puts the numbers that it asks for in its place,
-/// found by controller::choose_points from the initial belief on, among obstacles that stand where
-/// they are at the beginning. They are those that the scenario has where its controller does not
-/// plan by quantisation. Returns what was found, if anything was looked for. Throws
-/// std::invalid_argument on settings that make no sense.
+/// If `controller.quantisation` has a tolerance, replaces it by the numbers of points that it
+/// requires, chosen by controller::choose_points from the initial belief on, with obstacles at
+/// their initial positions. If the controller does not plan by quantisation, the scenario's numbers
+/// are kept. Returns the choice, if one was made. Throws std::invalid_argument on inconsistent
+/// settings.
 std::optional<controller::PointsChoice> choose_points(Scenario& scenario);
 
-/// The same as a new value.
+/// The same on a copy.
 [[nodiscard]] Scenario with_chosen_points(Scenario scenario);
 
 }  // namespace qsmpc::harness

@@ -1,5 +1,4 @@
-// What a scenario's controller decides before anything is observed, for those who look at a plan
-// and not at a drive.
+// A scenario's decision before anything is observed, for inspecting a plan without a drive.
 #pragma once
 
 #include <memory>
@@ -14,8 +13,8 @@
 
 namespace qsmpc::harness {
 
-/// The decision at the initial belief, its mean standing for the observation, and what follows from
-/// it without further decisions: the policy's stages, or the one stage of an input that is held.
+/// The decision at the initial belief, with its mean as the observation, and the motion that
+/// follows without further decisions: the policy's stages, or the single stage of a held input.
 class FirstDecision {
  public:
   /// Refers to the dynamics. Throws std::invalid_argument as the controller's maker.
@@ -29,7 +28,7 @@ class FirstDecision {
   controller::Gaussian belief_;
   controller::DecisionMotion motions_;
   std::unique_ptr<controller::Controller> controller_;
-  const controller::Decision* decision_ = nullptr;  // the controller's own
+  const controller::Decision* decision_ = nullptr;  // owned by the controller
   std::optional<controller::PredictedMotion> motion_;
 };
 

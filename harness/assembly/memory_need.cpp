@@ -16,19 +16,19 @@ namespace {
 
 constexpr double kGiga = 1e9;
 constexpr double kNumber = sizeof(double);
-// Measured: what is held for a point's share in a cluster, and what making the clusters takes for
-// every product of a point with a part of the noise.
+// Measured, bytes: storage per share of a point in a cluster, and the cost of clustering per
+// product of a point and a component of the noise.
 constexpr double kShare = 14.0;
 constexpr double kProduct = 400.0;
 
-/// The number in a file of the system; infinity where there is none, e.g. "max".
+/// The number in a system file; infinity if there is none, e.g. "max".
 double limit_in(const char* path) {
   std::ifstream file(path);
   double value = kInfinity;
   return file >> value ? value : kInfinity;
 }
 
-/// Every sample's inputs, and a few numbers for itself and for each path of the noise.
+/// The inputs of every sample, plus a few numbers per sample and per path of the noise.
 double samples_need(const Scenario& scenario) {
   const controller::MppiSettings& mppi = scenario.controller.mppi;
   const auto dim = static_cast<double>(scenario.initial_state.mean.size());

@@ -1,4 +1,4 @@
-// How much memory a scenario's sizes ask for, estimated before it is asked for.
+// Estimates the memory that a scenario requires, before it is allocated.
 #pragma once
 
 #include <optional>
@@ -8,26 +8,26 @@
 
 namespace qsmpc::harness {
 
-/// About how much memory (bytes) the controller of `scenario` needs, by horizon and numbers of
-/// points or samples. Within a factor of about 4 of what was measured, and made for refusing what
-/// is far beyond a machine.
+/// Approximate memory (bytes) that the controller of `scenario` needs, from the horizon and the
+/// numbers of points or samples. Within a factor of about 4 of measurements; meant for rejecting
+/// sizes far beyond a machine's memory.
 [[nodiscard]] double memory_need(const Scenario& scenario);
 
-/// The memory (bytes) that this process may use: the machine's, or less where the limits of the
-/// process (ulimit -v) or of its control group say so.
+/// The memory (bytes) that this process may use: the machine's, or less where the process's limits
+/// (ulimit -v) or its control group restrict it.
 [[nodiscard]] double usable_memory();
 
-/// What of the usable memory may be asked for.
+/// The usable share of that memory.
 inline constexpr double kMemoryShare = 0.75;
 
-/// What is wrong, in the words of an error, and what would not be.
+/// The problem in the words of an error, and what would be acceptable.
 struct MemoryProblem {
   std::string found;
   std::string expected;
 };
 
-/// Whether `count` drives of `scenario` at the same time need more than kMemoryShare of `usable`
-/// bytes; nothing where they do not.
+/// The problem if `count` simultaneous drives of `scenario` need more than kMemoryShare of `usable`
+/// bytes; nothing otherwise.
 [[nodiscard]] std::optional<MemoryProblem> memory_problem(const Scenario& scenario, int count,
                                                           double usable);
 

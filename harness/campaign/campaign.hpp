@@ -1,4 +1,4 @@
-// A campaign: which episodes are driven, and what is kept of them.
+// A campaign: the episodes to drive and what to keep of them.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ enum class TraceKeeping { kNone, kFailures, kAll };
 /// "none", "failures" or "all".
 [[nodiscard]] const char* trace_keeping_name(TraceKeeping keeping);
 
-/// The seeds of a campaign, each once: first, first + 1, … or those listed.
+/// The distinct seeds of a campaign: first, first + 1, … or those listed.
 struct SeedSet {
   std::uint64_t first = 0;
   std::int64_t count = 0;               ///< ≥ 1 where `listed` is empty
@@ -36,16 +36,16 @@ struct SeedSet {
   friend bool operator==(const SeedSet&, const SeedSet&) = default;
 };
 
-/// "0 to 999", or "3, 5, 8" for those that are listed.
+/// "0 to 999", or "3, 5, 8" for listed seeds.
 [[nodiscard]] std::string seeds_text(const SeedSet& seeds);
-/// The inverse of `seeds_text`. Throws std::invalid_argument on something else.
+/// The inverse of `seeds_text`. Throws std::invalid_argument on any other text.
 [[nodiscard]] SeedSet seeds_from_text(const std::string& text);
 
-/// Where seeds are among those of a set.
+/// Maps seeds to their index in a SeedSet.
 class SeedPlaces {
  public:
   explicit SeedPlaces(const SeedSet& seeds);
-  /// The index of `seed`, as SeedSet::at has it; nothing for a seed of no such set.
+  /// The index of `seed`, the inverse of SeedSet::at; nothing if the set does not contain it.
   [[nodiscard]] std::optional<std::int64_t> of(std::uint64_t seed) const;
 
  private:
@@ -59,9 +59,9 @@ struct Shard {
   std::int64_t index = 1;  ///< 1 … count
   std::int64_t count = 1;
 
-  /// Whether it has the seed at `seed_index` of the campaign.
+  /// Whether the shard contains the campaign's seed at `seed_index`.
   [[nodiscard]] bool has(std::int64_t seed_index) const { return seed_index % count == index - 1; }
-  /// How many of `seeds` seeds it has.
+  /// How many of a campaign's `seeds` seeds the shard contains.
   [[nodiscard]] std::int64_t share(std::int64_t seeds) const {
     return (seeds - index + count) / count;
   }
@@ -70,15 +70,15 @@ struct Shard {
 
 /// One way to drive: a scenario with settings on a plant.
 struct CampaignVariant {
-  std::string name;      ///< of all that makes it differ; unique in the campaign
+  std::string name;      ///< made of everything that makes it differ; unique in the campaign
   std::string scenario;  ///< as the campaign file names it
   std::string settings;  ///< label of the file's variant and grid point; may be empty
-  std::vector<std::string> overrides{};  ///< KEY=VALUE, in the order in which they are applied
+  std::vector<std::string> overrides{};  ///< KEY=VALUE, in order of application
   std::string plant;                     ///< as the campaign file names it; empty: the scenario's
-  Scenario resolved;                     ///< with all of it applied; its seed is 0
+  Scenario resolved;                     ///< with all of this applied; its seed is 0
 };
 
-/// Settings whose variants are joined by a line in the figure of risk against cost.
+/// Settings whose variants are joined by a line in the risk-against-cost figure.
 struct VariantFamily {
   std::string name;
   std::vector<std::string> settings{};  ///< CampaignVariant::settings, along the line; each once
@@ -86,45 +86,46 @@ struct VariantFamily {
   friend bool operator==(const VariantFamily&, const VariantFamily&) = default;
 };
 
-/// StopCriterion::of that counts the episodes whose true state entered the unsafe set.
+/// The StopCriterion::of that counts the episodes whose true state entered the unsafe set.
 inline constexpr const char* kUnsafeEvent = "unsafe";
 
-/// When a campaign has driven enough seeds: see StopRule.
+/// Decides when a campaign has driven enough seeds; see StopRule.
 struct StopCriterion {
   std::string of = kUnsafeEvent;  ///< kUnsafeEvent, or outcome_name of an outcome
-  double rate_halfwidth = 0.0;    ///< in (0, 0.5): of the interval of each variant's rate, at most
-  double confidence = 0.99;  ///< in (0, 1), of each variant's interval, at every number of seeds
+  double rate_halfwidth = 0.0;    ///< in (0, 0.25]: largest half-width of a variant's interval
+  double confidence =
+      0.99;  ///< in [0.5, 0.999999], of each variant's interval, at all numbers of seeds
 
   friend bool operator==(const StopCriterion&, const StopCriterion&) = default;
 };
 
-/// "unsafe to +-0.001 at 99 %"; "none" without one.
+/// "unsafe to +-0.001 at 99 %"; "none" without a criterion.
 [[nodiscard]] std::string until_text(const std::optional<StopCriterion>& until);
 
-/// How rare outcomes are looked for.
+/// How rare outcomes are searched for.
 struct RareSettings {
   SplitSettings splitting{};
-  bool certify = true;  ///< whether every drive is certified, so that certificates can be compared
+  bool certify = true;  ///< whether every drive is certified, for comparison with the certificates
 };
 
 /// Every variant is driven with every seed. The same seed gives every variant the same random
-/// numbers: what differs between variants is paired by seed.
+/// numbers, so that variants are compared in pairs by seed.
 struct Campaign {
   std::string name;
-  std::vector<CampaignVariant> variants;  ///< at least one; by scenario, settings, plant
+  std::vector<CampaignVariant> variants;  ///< at least one; ordered by scenario, settings, plant
   SeedSet seeds;
   TraceKeeping traces = TraceKeeping::kNone;
-  /// With kFailures: of each variant, the first this many seeds keep their trace, too.
+  /// With kFailures: the first this many seeds of each variant keep their trace as well.
   std::int64_t trace_sample = 0;
-  /// The lines of the figure of risk against cost, by name; without any there is no such figure.
+  /// The lines of the risk-against-cost figure; without any there is no such figure.
   std::vector<VariantFamily> risk_against_cost{};
-  /// Fewer seeds than `seeds` are driven where fewer suffice.
+  /// With a criterion, fewer seeds than `seeds` are driven if they suffice.
   std::optional<StopCriterion> until{};
-  /// Where rare outcomes are looked for: how every seed of a variant also estimates how probable it
-  /// is that a drive is unsafe.
+  /// If set, every seed of a variant also estimates the probability that a drive is unsafe, by
+  /// splitting with these settings.
   std::optional<RareSettings> rare{};
 
-  /// At most.
+  /// The maximum number of episodes; `until` may reduce it.
   [[nodiscard]] std::int64_t episodes() const {
     return static_cast<std::int64_t>(variants.size()) * seeds.size();
   }
@@ -133,7 +134,7 @@ struct Campaign {
 /// "none", "all", or "failures, sample N".
 [[nodiscard]] std::string traces_text(const Campaign& campaign);
 
-/// "200 particles, 1 killed, floor 1e-12, certified"; empty where rare outcomes are not looked for.
+/// "200 particles, 1 killed, floor 1e-12, certified"; empty if rare outcomes are not searched for.
 [[nodiscard]] std::string rare_text(const Campaign& campaign);
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-// Which episodes of a campaign a run drives, and in which order.
+// The episodes of a campaign that a run drives, and their order.
 #pragma once
 
 #include <cstddef>
@@ -10,29 +10,30 @@
 
 namespace qsmpc::harness {
 
-/// An episode to be driven.
+/// An episode to drive.
 struct EpisodeTask {
   std::size_t variant = 0;      ///< index in the campaign
-  std::int64_t seed_index = 0;  ///< in its seeds
-  bool again = false;           ///< it is in the store, and is to be replaced
+  std::int64_t seed_index = 0;  ///< index in the campaign's seeds
+  bool again = false;           ///< it is already in the store and is to be replaced
 };
 
-/// Used by several threads at once.
+/// Thread-safe.
 class EpisodeSource {
  public:
   virtual ~EpisodeSource() = default;
 
-  /// Episodes that it is about, those in the store included; fewer once fewer suffice.
+  /// The number of episodes in its scope, including those in the store; decreases once fewer
+  /// suffice.
   [[nodiscard]] virtual std::int64_t total() const = 0;
 
-  /// The next episode to be driven, or nothing when none is left or `stopped`, which it asks first,
-  /// returns true. It may wait for one, and then asks again and again.
+  /// The next episode to drive, or nothing if none is left or `stopped` returns true. `stopped` is
+  /// called first. The call may block until an episode becomes available, polling `stopped`.
   virtual std::optional<EpisodeTask> next(const std::function<bool()>& stopped) = 0;
 
-  /// Whether an episode that `next` gave out is still to be driven; asked while it is.
+  /// Whether an episode returned by `next` is still wanted; called while it is being driven.
   [[nodiscard]] virtual bool is_wanted(const EpisodeTask& task) const = 0;
 
-  /// Told once the row of an episode that `next` gave out is on the disk.
+  /// Called once the row of an episode returned by `next` is on disk.
   virtual void stored(const EpisodeTask& task, const EpisodeRow& row) = 0;
 };
 

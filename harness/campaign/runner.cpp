@@ -27,10 +27,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Drivers at rest are kept for this many variants, as each takes some megabytes.
+// Idle drivers are kept for at most this many variants per job: each takes several megabytes.
 constexpr std::size_t kDriversPerJob = 4;
 
-// How much later than its controllers' processes this one may hear of a signal to stop.
+// Maximum delay between a stop signal reaching a controller's process and reaching this one.
 constexpr std::chrono::milliseconds kSignalsApart{500};
 constexpr std::chrono::milliseconds kLook{10};
 
@@ -68,7 +68,7 @@ class CampaignRun {
     try {
       while (const std::optional<EpisodeTask> task = next()) drive(*task);
     } catch (...) {
-      failed_ = true;  // the others give up, too
+      failed_ = true;  // makes the other threads stop
       throw;
     }
   }
@@ -90,7 +90,7 @@ class CampaignRun {
              (options_.should_hurry && options_.should_hurry());
     };
     const Trace trace = drivers_.run(campaign_.variants[task.variant].resolved, options);
-    // What was cut short says nothing, and will be driven again.
+    // An episode that was cut short is discarded; if still needed, it will be driven again.
     if (trace.outcome == Outcome::kInterrupted || !source_.is_wanted(task)) return;
     if (ended_with_its_controller(trace)) return;
     EpisodeRow row = episode_row(EpisodeView(trace), store_.variant_ids()[task.variant]);
@@ -103,8 +103,8 @@ class CampaignRun {
     count(row, task);
   }
 
-  /// What the seed says of rare outcomes, where they are looked for; false if interrupted. It takes
-  /// as long as many episodes, so that the first wish to stop ends it.
+  /// Adds the seed's estimate of rare outcomes, if these are searched for; false if interrupted. It
+  /// takes as long as many episodes, so the first request to stop interrupts it.
   bool add_rare(const EpisodeTask& task, EpisodeRow& row) {
     if (!campaign_.rare) return true;
     row.rare = rare_run(campaign_.variants[task.variant].resolved, *campaign_.rare, row.seed,
@@ -112,8 +112,8 @@ class CampaignRun {
     return row.rare.has_value();
   }
 
-  /// Whether the controller's failure comes from a signal to stop that went to all processes of a
-  /// job, as Slurm's do, and reached a controller outside of the program first.
+  /// Whether the controller failed because of a stop signal to all processes of a job, as sent by
+  /// Slurm, that reached an external controller before this process.
   [[nodiscard]] bool ended_with_its_controller(const Trace& trace) const {
     if (trace.outcome != Outcome::kFault || trace.fault_of != FaultOf::kController) return false;
     const auto until = Clock::now() + kSignalsApart;
@@ -133,11 +133,11 @@ class CampaignRun {
     return false;
   }
 
-  /// Writes the trace to the disk, before the row that speaks of it.
+  /// Writes the trace to disk before the row that refers to it.
   void keep(const Trace& trace, EpisodeRow& row) {
     row.trace = episode_folder(row.variant, row.seed);
     const std::string target = folder_ + "/" + row.trace;
-    // The library of the traces' format is not made for several threads.
+    // The trace format's library is not thread-safe.
     const std::lock_guard lock(trace_mutex_);
     make_durable_folder(target, folder_);
     write_trace(target + "/" + kTraceFile, trace);
@@ -171,7 +171,7 @@ class CampaignRun {
   DriverPool drivers_;
   std::atomic<bool> failed_ = false;
   std::mutex trace_mutex_;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the members below
   CampaignProgress progress_;
 };
 

@@ -1,4 +1,4 @@
-// Drives the episodes that a campaign's folder does not have yet.
+// Drives the episodes that are missing from a campaign's folder.
 #pragma once
 
 #include <cstdint>
@@ -14,56 +14,56 @@
 
 namespace qsmpc::harness {
 
-/// How far a campaign is.
+/// Progress of a campaign.
 struct CampaignProgress {
   std::int64_t done = 0;   ///< episodes in the store
-  std::int64_t total = 0;  ///< episodes of the shard, or of what else is driven
-  std::int64_t fresh = 0;  ///< of those done, the ones driven since the start of this run
+  std::int64_t total = 0;  ///< episodes of the shard, or of the EpisodeSource in general
+  std::int64_t fresh = 0;  ///< of `done`, the episodes driven by this run
   double elapsed = 0.0;    ///< s, of this run
-  std::map<std::string, std::int64_t> outcomes{};  ///< of those done
-  /// The first seeds that sufficed, where the campaign's `until` has stopped it.
+  std::map<std::string, std::int64_t> outcomes{};  ///< of the episodes done
+  /// Number of first seeds that sufficed, if the campaign's `until` has stopped it.
   std::optional<std::int64_t> stopped_after{};
 };
 
 struct CampaignOptions {
-  int jobs = 1;  ///< ≥ 1, episodes at the same time
+  int jobs = 1;  ///< ≥ 1, episodes driven concurrently
   Shard shard{};
-  bool update = false;        ///< go on although the campaign changed; see Store
-  bool retry_faults = false;  ///< drive the episodes that faulted again
-  /// Asked by several threads: true begins no further episode.
+  bool update = false;        ///< continue although the campaign changed; see Store
+  bool retry_faults = false;  ///< drive faulted episodes again
+  /// Polled by several threads: once true, no further episode begins.
   std::function<bool()> should_stop{};
-  /// Asked by several threads: true gives up those that have begun, too.
+  /// Polled by several threads: once true, the running episodes are abandoned as well.
   std::function<bool()> should_hurry{};
-  /// Told what became of a changed campaign, before anything runs.
+  /// Called before anything runs with the effects of a changed campaign.
   std::function<void(const StoreUpdate&)> on_update{};
-  /// Told once at the start and after each episode, by one thread at a time.
+  /// Called once at the start and after each episode, by one thread at a time.
   std::function<void(const CampaignProgress&)> on_progress{};
 };
 
-/// Drives what is missing of `campaign` in `folder`, which is made if need be, and stores it as it
-/// is done. Every episode runs on one thread; its row and trace depend on its variant and seed
-/// alone, timings aside, for any number of jobs.
+/// Drives the episodes of `campaign` that are missing from `folder`, which is created if necessary,
+/// and stores each when it is done. Every episode runs on one thread; apart from timings its row
+/// and trace depend only on its variant and seed, for any number of jobs.
 ///
-/// Returns how far it is at the end; done < total if it was stopped. Throws InputError for what is
-/// wrong with the campaign, its plants or the store (see Store), IoError when another process works
-/// in the folder or something cannot be written; what was stored before stays.
+/// Returns the final progress; done < total if it was stopped. Throws InputError if the campaign,
+/// its plants or the store (see Store) are invalid, IoError if another process works in the folder
+/// or something cannot be written; what was stored before is kept.
 [[nodiscard]] CampaignProgress run_campaign(const Campaign& campaign, const std::string& folder,
                                             const CampaignOptions& options);
 
-/// Where the episodes of a run come from and where they go.
+/// Source and destination of a run's episodes.
 struct EpisodeFlow {
-  std::string folder;  ///< that of the store, for the traces that are kept
+  std::string folder;  ///< the store's, also for the kept traces
   Store& store;
   EpisodeSource& source;
 };
 
-/// Drives what the source of `flow` gives out until it has nothing left or `options` ask to stop;
-/// what they say of shards and stores is the source's and the store's matter. Returns and throws as
-/// run_campaign does.
+/// Drives the episodes of `flow.source` until none is left or `options` ask to stop. The members
+/// `shard`, `update` and `retry_faults` of `options` have no effect here: they concern the source
+/// and the store. Returns and throws as run_campaign does.
 [[nodiscard]] CampaignProgress drive_episodes(const Campaign& campaign, const EpisodeFlow& flow,
                                               const CampaignOptions& options);
 
-/// StoredVariant::plant_digest of each variant. Throws InputError where a vehicle cannot be loaded.
+/// StoredVariant::plant_digest of each variant. Throws InputError if a vehicle cannot be loaded.
 [[nodiscard]] std::vector<std::string> plant_digests(const Campaign& campaign);
 
 }  // namespace qsmpc::harness

@@ -49,7 +49,7 @@ void ShardSource::stored(const EpisodeTask& task, const EpisodeRow& row) {
   stop_where_it_suffices();
 }
 
-/// Begins no episode of seeds beyond those that suffice, and wants none that has begun.
+/// Once fewer seeds suffice, later ones are neither begun nor, if begun, wanted.
 void ShardSource::stop_where_it_suffices() {
   const std::optional<std::int64_t> seeds = rule_->stops_after();
   if (!seeds) return;

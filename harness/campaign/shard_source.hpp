@@ -1,4 +1,4 @@
-// The episodes of a shard that its store does not have.
+// The episodes of a shard that are missing from its store.
 #pragma once
 
 #include <atomic>
@@ -14,9 +14,9 @@
 
 namespace qsmpc::harness {
 
-/// All variants of a seed come before the next seed, so that what is done at any time can be
-/// compared in pairs. Where the campaign has a rule that stops it, no seed beyond those that
-/// suffice is wanted.
+/// All variants of a seed come before the next seed, so that the episodes done can be compared in
+/// pairs at any time. If the campaign has a stop rule, seeds beyond those that suffice are not
+/// wanted.
 class ShardSource : public EpisodeSource {
  public:
   /// `retry_faults`: episodes that faulted are driven again. The references outlive it.
@@ -38,7 +38,7 @@ class ShardSource : public EpisodeSource {
   const bool retry_faults_;
   std::atomic<std::int64_t> total_;
   std::atomic<std::int64_t> seed_end_;  // no seed from here on is driven
-  std::mutex next_mutex_;               // of what is next
+  std::mutex next_mutex_;               // guards variant_ and seed_index_
   std::size_t variant_ = 0;
   std::int64_t seed_index_;
   std::mutex rule_mutex_;

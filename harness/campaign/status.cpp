@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kWindow = 60.0;  // s, over which the rate is taken
+constexpr double kWindow = 60.0;  // s, averaging window of the rate
 
 std::string outcomes_text(const std::map<std::string, std::int64_t>& outcomes) {
   std::string text;
@@ -25,7 +25,7 @@ std::string outcomes_text(const std::map<std::string, std::int64_t>& outcomes) {
   return text;
 }
 
-/// ", 5 min 0 s left"; at most where a rule may stop it before the last of its seeds.
+/// ", 5 min 0 s left"; with "at most" if a rule may stop the campaign before its last seed.
 std::string time_left_text(const CampaignStatus& status) {
   if (!status.left) return {};
   const bool may_stop = status.campaign.until && !status.campaign.stopped_after;

@@ -1,4 +1,4 @@
-// How far a campaign is, as anybody who can read its folder may ask at any time.
+// The progress of a campaign, for any process that can read its folder, at any time.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ struct CampaignStatus {
   StoredCampaign campaign;
   std::int64_t done = 0;
   std::map<std::string, std::int64_t> outcomes{};
-  std::optional<LockHolder> running{};  ///< who works on it
-  double rate = 0.0;                    ///< episodes per second of late; 0 if nobody works on it
-  std::optional<double> left{};         ///< s, at that rate; nothing where it is 0
+  std::optional<LockHolder> running{};  ///< the process that works on it
+  double rate = 0.0;                    ///< recent episodes per second; 0 if no process works on it
+  std::optional<double> left{};         ///< s, at that rate; nothing if it is 0
 };
 
 /// Reads the store and the lock in `folder` and changes nothing. Throws as StoreReader and
@@ -26,11 +26,11 @@ struct CampaignStatus {
 [[nodiscard]] CampaignStatus campaign_status(const std::string& folder);
 
 [[nodiscard]] std::string status_table(const CampaignStatus& status);
-/// Of these lines, those that say how many episodes are done and how they ended, and that of the
-/// rate.
+/// Parts of status_table: the lines with the episodes done and their outcomes, and the line with
+/// the rate.
 [[nodiscard]] std::string done_text(const CampaignStatus& status);
 [[nodiscard]] std::string rate_text(const CampaignStatus& status);
-/// One object, ending in a new line: name, shard, episodes, done, outcomes, running, rate, left.
+/// One object, ending in a newline: name, shard, episodes, done, outcomes, running, rate, left.
 [[nodiscard]] std::string status_json(const CampaignStatus& status);
 
 /// "12.3 episodes/s, 1 min 20 s left; reached 950, timeout 3".

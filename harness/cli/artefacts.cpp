@@ -52,7 +52,7 @@ std::string limited_words(const CertifiedRisk& risk, int periods) {
   return fmt::format("{:.3g} at most, limit {:.3g}, {}", risk.certified, risk.limit, exceeded);
 }
 
-/// What is certified, and what that is worth.
+/// Rows for the certificates, and whether they are bounds.
 std::string certificate_rows(const Summary& summary) {
   const bool holds = summary.no_bound.empty();
   const bool has_plan = !std::isnan(summary.horizon_max);
@@ -145,7 +145,7 @@ bool make_video(const EpisodeView& view, const VideoFiles& files,
       progress.update(done, total, "frames");
       const bool stopped = interrupts() != before;
       if (stopped && is_there && done < total) throw Interrupted();
-      // It is about to get its name: these numbers are of the video before it.
+      // The new video is about to get its name: the existing numbers belong to the previous one.
       if (stopped || done == total) remove_file(files.numbers);
       return !stopped;
     });

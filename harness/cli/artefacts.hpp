@@ -1,4 +1,4 @@
-// What is made from a trace, beside it in the same folder; shared by `run`, `render` and `report`.
+// Files made from a trace in its folder; shared by `run`, `render` and `report`.
 #pragma once
 
 #include <string>
@@ -17,18 +17,18 @@ inline constexpr const char* kPageFile = "report.html";
 /// Removes the summary, videos and page in `folder`. Throws IoError.
 void discard_artefacts(const std::string& folder);
 
-/// Draws with the OpenGL library of this name (see gl_names) from now on. Throws IoError when it is
-/// not to be had.
+/// Draws with the OpenGL library of this name (see gl_names) from now on. Throws IoError if it is
+/// not available.
 void choose_gl(const std::string& name);
 
-/// Why nothing can be drawn on this machine; empty where something can.
+/// Why nothing can be drawn on this machine; empty if drawing works.
 [[nodiscard]] std::string why_no_gl();
 
-/// Throws IoError where the limit of the process leaves too little address space to draw with
-/// `options`. To be asked before anything is drawn or `choose_gl` and `why_no_gl` are called.
+/// Throws IoError if the process's limit leaves too little address space to draw with `options`. To
+/// be called before anything is drawn and before `choose_gl` and `why_no_gl`.
 void refuse_without_memory_to_draw(const EpisodeVideoOptions& options);
 
-/// What the scenario says of its video.
+/// The video options in the scenario.
 [[nodiscard]] EpisodeVideoOptions video_options(const Scenario& scenario);
 
 struct VideoFiles {
@@ -37,13 +37,13 @@ struct VideoFiles {
 };
 
 struct VideoTalk {
-  bool quiet = false;    ///< no progress
-  bool verbose = false;  ///< on standard error: what drew, and how fast
+  bool quiet = false;    ///< suppresses progress
+  bool verbose = false;  ///< reports on standard error what drew, and how fast
 };
 
-/// Renders the video with a progress bar. An interrupt ends it early: a video that is there stays
-/// as it is, else what is rendered becomes the video; a line on standard error says which. Returns
-/// whether all of it was rendered. Throws IoError.
+/// Renders the video with a progress bar. An interrupt ends it early: an existing video is kept,
+/// otherwise the frames rendered so far become the video; a line on standard error says which.
+/// Returns whether the whole video was rendered. Throws IoError.
 bool make_video(const EpisodeView& view, const VideoFiles& files,
                 const EpisodeVideoOptions& options, const VideoTalk& talk);
 

@@ -56,13 +56,13 @@ struct CampaignArguments {
   bool json = false;
   std::vector<std::string> fail_on = {"fault"};
   CampaignOptions options;
-  LaunchOptions launch;          ///< `on` is empty where this process drives by itself
+  LaunchOptions launch;          ///< `on` is empty if this process itself drives
   bool has_jobs = false;         ///< --jobs was given
   std::int64_t lease_seeds = 0;  ///< 0: not given
   std::int64_t lost_after = TaskLaunch{}.lost_after.count();  ///< s
 };
 
-/// "I/N", 1 ≤ I ≤ N. Throws InputError on something else.
+/// Parses "I/N", 1 ≤ I ≤ N. Throws InputError on anything else.
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = text.find('/');
   if (slash != std::string::npos) {
@@ -78,7 +78,7 @@ Shard parse_shard(const std::string& text) {
                     .expected = fmt::format("I/N with 1 <= I <= N <= {}, e.g. 1/4", kMostShards)});
 }
 
-/// Refuses options that do not go together.
+/// Rejects options that are incompatible.
 void check_launch(const CampaignArguments& arguments) {
   if (arguments.launch.on.empty()) {
     if (arguments.lease_seeds == 0 && arguments.launch == LaunchOptions{}) return;
@@ -96,7 +96,7 @@ void check_launch(const CampaignArguments& arguments) {
   refuse("--retry-faults", arguments.options.retry_faults);
 }
 
-/// Episodes at the same time, of each task; 0: as many as its machine has cores.
+/// Simultaneous episodes per task; 0: as many as its machine has cores.
 int jobs_of_tasks(const CampaignArguments& arguments) {
   if (arguments.has_jobs) return arguments.options.jobs;
   if (arguments.launch.on.starts_with("ssh:")) return 0;
@@ -104,7 +104,8 @@ int jobs_of_tasks(const CampaignArguments& arguments) {
   return std::max(1, available_threads() / launch_tasks(arguments.launch));
 }
 
-/// The campaign by tasks: a plan in the folder, then `resume` without a former launch.
+/// Drives the campaign by tasks: writes a plan into the folder, then proceeds as `resume` without a
+/// previous launch.
 int campaign_of_tasks(const Campaign& campaign, const std::string& folder,
                       const CampaignArguments& arguments) {
   const int jobs = jobs_of_tasks(arguments);
@@ -209,7 +210,7 @@ void add_campaign_command(CLI::App& app, int& exit_code) {
   add_campaign_status_command(*command, exit_code);
   add_campaign_merge_command(*command, exit_code);
   add_campaign_tasks_commands(*command, exit_code);
-  // The callback is called for the subcommands, too.
+  // The callback is also called for the subcommands.
   command->callback([command, arguments, &exit_code] {
     if (!command->get_subcommands().empty()) return;
     if (arguments->campaign.empty()) throw CLI::RequiredError("campaign");

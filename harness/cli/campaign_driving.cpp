@@ -43,7 +43,7 @@ CampaignProgress drive_campaign(const Campaign& campaign, const std::string& fol
   options.on_progress = [&](const CampaignProgress& now) {
     progress.update(now.done, now.total, progress_note(now));
   };
-  const InterruptPatience patience(2);  // the first lets episodes end
+  const InterruptPatience patience(2);  // the first interrupt lets episodes finish
   return run_campaign(campaign, folder, options);
 }
 

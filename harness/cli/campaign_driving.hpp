@@ -1,4 +1,5 @@
-// Driving what a campaign's folder lacks, with progress on the terminal and Ctrl-C.
+// Drives the missing episodes of a campaign's folder, with progress on the terminal and support for
+// Ctrl-C.
 #pragma once
 
 #include <string>
@@ -8,17 +9,18 @@
 
 namespace qsmpc::harness {
 
-/// Throws InputError, which names `file`, where `jobs` drives of some variant at the same time need
-/// more memory than there is.
+/// Throws InputError, which names `file`, if `jobs` simultaneous drives of some variant need more
+/// memory than there is.
 void refuse_beyond_memory(const Campaign& campaign, const std::string& file, int jobs);
 
-/// What the progress says, and what of `options` is left to it: when to stop, and who is told.
+/// The progress output. In its `options`, drive_campaign itself sets when to stop and the
+/// callbacks.
 struct CampaignTalk {
   std::string label = "driving";
   bool quiet = false;
 };
 
-/// As run_campaign. Ctrl-C lets the episodes that have begun end, a second one gives them up.
+/// As run_campaign. The first Ctrl-C lets running episodes finish, a second one abandons them.
 [[nodiscard]] CampaignProgress drive_campaign(const Campaign& campaign, const std::string& folder,
                                               CampaignOptions options, const CampaignTalk& talk);
 

@@ -33,8 +33,8 @@ const StoredVariant& variant_of(const StoreReader& store, const EpisodeRow& row)
   return *std::ranges::find(store.variants(), row.variant, &StoredVariant::id);
 }
 
-/// The scenario of a variant as the store has it. `with_files`: refused where its vehicle's file is
-/// not found.
+/// The scenario of a variant as stored. `with_files`: it is refused if its vehicle's file is not
+/// found.
 Scenario scenario_of(const StoredVariant& variant, const std::string& folder, bool with_files) {
   return parse_scenario(variant.scenario_text,
                         {.file = folder + "/" + kStoreFile + ", variant " + variant.name,
@@ -43,14 +43,14 @@ Scenario scenario_of(const StoredVariant& variant, const std::string& folder, bo
                          .is_recorded = true});
 }
 
-/// A scenario as text, without what does not change how an episode of a given seed goes.
+/// A scenario as text, without the seed, which does not affect an episode of a given seed.
 std::string without_seed(Scenario scenario) {
   scenario.seed = 0;
   return to_yaml(scenario);
 }
 
-/// Whether the trace at `path` is one of this episode: another one may have been left there, before
-/// the campaign changed. One that cannot be read is none.
+/// Whether the trace at `path` is of this episode: another one may have been left there before the
+/// campaign changed. An unreadable trace does not count.
 bool is_trace_of(const std::string& path, const EpisodeRow& row, const StoredVariant& variant,
                  const std::string& folder) {
   if (!is_file(path)) return false;
@@ -99,13 +99,13 @@ ListedEpisode listed(const StoreReader& store, const EpisodeRow& row, const std:
   return episode;
 }
 
-/// Says so where an episode did not end as it did in the campaign.
+/// Reports if an episode did not end as it did in the campaign.
 void compare_with_store(const EpisodeView& view, const EpisodeRow& stored) {
   const EpisodeRow now = episode_row(view, stored.variant);
   const auto same = [](double one, double other) {
     return one == other || (std::isnan(one) && std::isnan(other));
   };
-  // A former word tells only that it was unsafe.
+  // A former outcome name only says that the drive was unsafe.
   const bool same_end =
       now.outcome == stored.outcome || (stored.outcome == kLeftSafeSet && now.unsafe);
   if (same_end && now.steps == stored.steps && now.unsafe == stored.unsafe &&
@@ -119,7 +119,7 @@ void compare_with_store(const EpisodeView& view, const EpisodeRow& stored) {
       stored.outcome, stored.steps);
 }
 
-/// Drives an episode whose trace is not kept, and keeps it; nothing if interrupted.
+/// Drives an episode whose trace was not kept, and keeps its trace; returns nothing if interrupted.
 std::optional<Trace> drive_again(const StoredVariant& variant, const EpisodeRow& row,
                                  const std::string& folder, bool quiet) {
   const Scenario scenario = scenario_of(variant, folder, true);
@@ -145,8 +145,8 @@ std::optional<Trace> drive_again(const StoredVariant& variant, const EpisodeRow&
   return trace;
 }
 
-/// Summary, page and video of an episode in the folder `target`. `has_drawn`: whether a video was
-/// drawn before, so that there is memory to draw.
+/// Makes summary, page and video of an episode in the folder `target`. `has_drawn`: whether a video
+/// was drawn before, so that there is enough memory to draw.
 void make_artefacts(const EpisodeView& view, const std::string& target, bool quiet,
                     bool& has_drawn) {
   bool with_video = is_file(target + "/" + kVideoFile);

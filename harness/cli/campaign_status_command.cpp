@@ -18,7 +18,7 @@ namespace {
 
 bool has_store(const std::string& folder) { return is_file(folder + "/" + kStoreFile); }
 
-/// A contest that still searches for settings has no store but that of the search.
+/// A contest that is still searching for settings has only the store of the search.
 std::string store_folder(const std::string& folder) {
   const std::string tuning = folder + "/" + kTuningFolder;
   return !has_store(folder) && has_store(tuning) ? tuning : folder;

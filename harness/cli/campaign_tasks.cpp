@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 std::string tasks_lock_folder(const std::string& folder) { return folder + "/" + kClusterFolder; }
 
-/// Looks at what is finished, and shows it.
+/// Polls for finished episodes, and shows the progress.
 class TasksProgress {
  public:
   TasksProgress(std::string folder, bool quiet)
@@ -36,7 +36,7 @@ class TasksProgress {
     before_ = finished_.count();
   }
 
-  /// At most once a second.
+  /// Shows the progress at most once a second.
   void show_at_times() {
     constexpr auto kPeriod = std::chrono::seconds(1);
     if (Clock::now() < next_) return;
@@ -63,7 +63,7 @@ class TasksProgress {
   std::int64_t before_ = 0;
 };
 
-/// Waits for the tasks; each Ctrl-C is handed on to them once.
+/// Waits for the tasks; each Ctrl-C is forwarded to them once.
 void wait_for_tasks(const StartedTasks& started, const std::string& folder, bool quiet) {
   const InterruptPatience patience(2);
   TasksProgress progress(folder, quiet);

@@ -1,4 +1,4 @@
-// The commands that take the folder of a campaign which tasks drive.
+// The commands that take the folder of a campaign driven by tasks.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -33,7 +33,7 @@ int work(WorkArguments& arguments) {
   const LeasePlan plan = read_lease_plan(arguments.folder);
   const Campaign campaign = planned_campaign(plan, arguments.folder);
   refuse_beyond_memory(campaign, arguments.folder, arguments.options.jobs);
-  const InterruptPatience patience(2);  // the first lets episodes end
+  const InterruptPatience patience(2);  // the first interrupt lets episodes finish
   arguments.options.should_stop = [] { return interrupts() > 0; };
   arguments.options.should_hurry = [] { return interrupts() > 1; };
   const WorkerEnd end = run_worker(plan, campaign, arguments.folder, arguments.options);
@@ -62,7 +62,7 @@ void add_work_command(CLI::App& campaign, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = work(*arguments); });
 }
 
-/// The path of a campaign's folder that is the same for all tasks. Throws InputError where it has
+/// The canonical path of a campaign's folder, the same for all tasks. Throws InputError if it has
 /// no plan.
 std::string planned_folder(const std::string& folder) {
   (void)read_lease_plan(folder);
@@ -74,7 +74,7 @@ struct TasksArguments {
   TasksTalk talk;
 };
 
-/// A command that takes the folder and leaves a campaign's results.
+/// Adds the options of a command that takes the folder and produces a campaign's results.
 std::shared_ptr<TasksArguments> add_tasks_options(CLI::App& command) {
   auto arguments = std::make_shared<TasksArguments>();
   command.add_option("folder", arguments->folder, "folder of a campaign that tasks drive")

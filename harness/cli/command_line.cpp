@@ -18,7 +18,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kLongestWord = 100;     // bytes of what was typed
+constexpr std::size_t kLongestWord = 100;     // bytes of what the user typed
 constexpr std::size_t kLongestMessage = 400;  // bytes
 
 /// The innermost command that was parsed, and the words that lead to it.
@@ -56,7 +56,7 @@ std::vector<std::string> commands_of(const CLI::App& app) {
   return names;
 }
 
-/// What was typed and is not known; an option before anything else.
+/// The unknown word in the command line; an option takes precedence.
 std::string unknown_word(const CLI::App& app) {
   const std::vector<std::string> words = app.remaining(/*recurse=*/true);
   for (const std::string& word : words) {

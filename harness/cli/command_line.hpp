@@ -1,4 +1,4 @@
-// What the command line itself says: help, versions, and what is wrong with what was typed.
+// Messages of the command line itself: help, versions and usage errors.
 #pragma once
 
 #include <string>
@@ -10,14 +10,15 @@ class ParseError;
 
 namespace qsmpc::harness {
 
-/// The help of the innermost command that `app` has parsed, with the whole command in its usage.
+/// The help of the innermost command that `app` has parsed, with the full command in its usage
+/// line.
 [[nodiscard]] std::string help_of_parsed(const CLI::App& app);
 
-/// The program's version, and on a line each those of the libraries that it is linked with.
+/// The program's version, and those of the libraries that it is linked with, one per line.
 [[nodiscard]] std::string versions();
 
-/// One line: what is wrong with `argv`, which `app` refused with `error`, with the nearest command
-/// or option where one is not known.
+/// One line: what is wrong with `argv`, which `app` rejected with `error`, with the nearest command
+/// or option if one is unknown.
 [[nodiscard]] std::string usage_problem(const CLI::App& app, const CLI::ParseError& error, int argc,
                                         const char* const* argv);
 

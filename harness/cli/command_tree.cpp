@@ -73,7 +73,7 @@ std::vector<std::string> option_names(const CLI::Option& option) {
 bool takes_value(const CLI::Option& option) { return option.get_expected_max() > 0; }
 
 std::vector<std::string> option_choices(const CLI::Option& option) {
-  // A set of names ends the type's own: "TEXT:{lbfgs,slsqp}".
+  // A set of names follows the type's name: "TEXT:{lbfgs,slsqp}".
   const std::string type = option.get_type_name();
   const std::size_t begin = type.find('{');
   const std::size_t end = type.find('}', begin);

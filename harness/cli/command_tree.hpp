@@ -1,4 +1,4 @@
-// The commands as the parser knows them: what help, manual pages and completion are made from.
+// The parser's commands, from which help, manual pages and completion are made.
 #pragma once
 
 #include <string>
@@ -19,12 +19,12 @@ struct NamedCommand {
   [[nodiscard]] std::string name(const char* separator = " ") const;
 };
 
-/// The command that `words` lead to from `app`. Throws InputError, naming the nearest, where there
-/// is none.
+/// The command that `words` lead to from `app`. Throws InputError, naming the nearest command, if
+/// there is none.
 [[nodiscard]] NamedCommand command_called(const CLI::App& app,
                                           const std::vector<std::string>& words);
 
-/// `app` and all commands below it, each before its own.
+/// `app` and all commands below it, each before its subcommands.
 [[nodiscard]] std::vector<NamedCommand> all_commands(const CLI::App& app);
 
 /// What may be typed after a command: its options with names, and its positional arguments.
@@ -37,7 +37,7 @@ struct NamedCommand {
 /// Whether a value follows the option's name.
 [[nodiscard]] bool takes_value(const CLI::Option& option);
 
-/// The words that the option's value is one of; empty where it may be anything.
+/// The allowed values of the option; empty if any value is allowed.
 [[nodiscard]] std::vector<std::string> option_choices(const CLI::Option& option);
 
 }  // namespace qsmpc::harness

@@ -93,7 +93,7 @@ TextFile error_file(const Comparison& comparison, const std::string& path) {
               comparison.scenario.model.system, origin)};
 }
 
-/// Nothing if interrupted.
+/// Returns nothing if interrupted.
 std::optional<Comparison> comparison_of(const Scenario& scenario,
                                         const ComparisonOptions& options) {
   try {
@@ -115,7 +115,7 @@ int compare(CompareArguments& arguments) {
   scenario.seed = arguments.seed.value_or(scenario.seed);
   refuse_motion(scenario, arguments.scenario, arguments.overrides, "compare");
   Scenario warned = scenario;
-  warned.error_origin.reset();  // whether the error holds for these plants is what is measured
+  warned.error_origin.reset();  // whether the error holds for these plants is being measured
   print_warnings(scenario_warnings(warned));
   refuse_beyond_memory(
       scenario, arguments.scenario, arguments.overrides,

@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// What may stand for a command's first argument without a name.
+/// The kind of a command's first positional argument.
 enum class ArgumentKind {
   kNone,
   kScenario,
@@ -51,7 +51,7 @@ std::string words_of(const NamedCommand& command, const std::string& program) {
   return name.size() > program.size() ? name.substr(program.size() + 1) : "";
 }
 
-/// Cases of "COMMAND,WORD": the command that the word leads to.
+/// Shell cases of "COMMAND,WORD": the command that the word leads to.
 std::string command_cases(const std::vector<NamedCommand>& commands, const std::string& program) {
   std::string text;
   for (const NamedCommand& command : commands) {
@@ -65,7 +65,7 @@ std::string command_cases(const std::vector<NamedCommand>& commands, const std::
   return text;
 }
 
-/// How bash completes the argument, with the words of commands that may stand there instead.
+/// How bash completes the argument, including the subcommands that may stand in its place.
 std::string bash_argument(const CLI::App& command, const CLI::App& app) {
   const CLI::Option* argument = first_positional(command);
   std::string words = fmt::format("{}", fmt::join(inner_names(command), " "));

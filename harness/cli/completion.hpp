@@ -1,4 +1,4 @@
-// Completion of command lines for shells, made from the commands.
+// Shell completion of command lines, generated from the commands.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ class App;
 
 namespace qsmpc::harness {
 
-/// A script for bash, to be sourced, or to stand as "qsmpc" in its folder of completions. Names of
-/// scenarios and campaigns are asked of the program when they are wanted.
+/// A script for bash, to be sourced, or installed as "qsmpc" in its folder of completions. Names of
+/// scenarios and campaigns are queried from the program on demand.
 [[nodiscard]] std::string bash_completion(const CLI::App& app);
 
 /// The same for zsh: "_qsmpc" in a folder of its $fpath.

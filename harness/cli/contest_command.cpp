@@ -55,7 +55,7 @@ struct ContestPart {
   int jobs = 1;
 };
 
-/// Whether all of it is driven.
+/// Returns whether the whole part has been driven.
 bool drive_part(const ContestPart& part, const ContestArguments& arguments) {
   const CampaignProgress end =
       drive_campaign(part.drives, part.folder, {.jobs = part.jobs, .update = arguments.update},
@@ -68,7 +68,7 @@ bool drive_part(const ContestPart& part, const ContestArguments& arguments) {
   return false;
 }
 
-/// Nothing if interrupted.
+/// Returns nothing if interrupted.
 std::optional<TuningResult> tune(const LoadedContest& loaded, const std::string& folder,
                                  const ContestArguments& arguments) {
   if (loaded.search.variants.empty()) return untuned(loaded.contest);
@@ -101,7 +101,7 @@ int contest_command(const ContestArguments& arguments) {
   const Campaign drives = chosen_drives(loaded.contest, tuning->choice);
   const bool driven = drive_part(
       {.drives = drives, .folder = folder, .label = "driving", .jobs = arguments.jobs}, arguments);
-  // One drive at a time: those beside it would take its time.
+  // One drive at a time: parallel drives would distort its times.
   const Campaign timed = timed_drives(loaded.contest, tuning->choice);
   const bool is_timed =
       driven &&

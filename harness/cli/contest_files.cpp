@@ -25,7 +25,7 @@ constexpr const char* kContestPage = "contest.html";
 constexpr const char* kContestNumbers = "contest.json";
 constexpr const char* kContestTable = "contest.csv";
 
-/// None where no drive arrives; those of an earlier state are then removed.
+/// Writes no figures if no drive arrives; earlier ones are then removed.
 void write_figures(const std::vector<Chart>& charts, const std::string& title,
                    const std::string& folder) {
   const std::string drawing = folder + "/" + kContestFigure;
@@ -47,7 +47,7 @@ void write_figures(const std::vector<Chart>& charts, const std::string& title,
 
 ContestResults write_contest_files(const Contest& contest, const TuningResult& tuning,
                                    const std::string& folder, bool is_timed) {
-  (void)write_campaign_results(folder);  // after the checksums are compared
+  (void)write_campaign_results(folder);  // the checksums have already been compared
   const StoreReader drives(folder);
   std::optional<StoreReader> timed;
   if (is_timed) timed.emplace(folder + "/" + kTimingFolder).verify();

@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// One line, however long an error's own text is.
+// Limits the line, however long an error's message is.
 constexpr std::size_t kLineLimit = 2000;
 
 int told(const std::string& text, ExitCode code) {

@@ -16,7 +16,7 @@ namespace {
 /// The help of the command that `words` lead to.
 std::string help_of(const CLI::App& app, const std::vector<std::string>& words) {
   const NamedCommand called = command_called(app, words);
-  // App::help would explain the command that was parsed, which is this one.
+  // App::help would explain the parsed command, which is this one.
   return called.command->get_formatter()->make_help(called.command, called.name(),
                                                     CLI::AppFormatMode::Normal);
 }

@@ -28,7 +28,7 @@ int init(const std::string& name) {
   const bool is_file = name.ends_with(".yaml") || name.ends_with(".yml");
   const std::string path = is_file ? name : name + ".yaml";
   const std::string text = new_scenario_text(fs::path(path).stem().string());
-  (void)parse_scenario(text, {.file = path});  // or the name cannot be one
+  (void)parse_scenario(text, {.file = path});  // throws if the name is invalid
   std::error_code error;
   if (fs::symlink_status(path, error).type() != fs::file_type::not_found) {
     throw InputError(

@@ -9,7 +9,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// The first lets work end, the second hurries it; who asks once more shall not wait.
+// The first interrupt lets work finish, the second hurries it, the third does not wait.
 constexpr int kEndsAtOnce = 3;
 
 extern "C" void count_signal(int /*number*/) {
@@ -22,10 +22,10 @@ void catch_interrupts() {
   struct sigaction action = {};
   action.sa_handler = count_signal;
   sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;  // no write of a result is cut short by it
+  action.sa_flags = SA_RESTART;  // interrupts do not cut writes short
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  // A reader that went away is an error of the write, not a death of the process.
+  // A closed pipe becomes a write error instead of killing the process.
   std::signal(SIGPIPE, SIG_IGN);
 }
 

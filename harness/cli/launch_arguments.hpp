@@ -8,8 +8,8 @@
 namespace qsmpc::harness {
 
 /// Adds --tasks-at-once, --partition, --time, --account, --sbatch, --program and --ssh-config,
-/// which set the members of `options`. Parsing throws InputError where --sbatch names a file that
-/// is none.
+/// which set the members of `options`. Parsing throws InputError if --sbatch names a file that does
+/// not exist.
 void add_launch_options(CLI::App& command, LaunchOptions& options);
 
 }  // namespace qsmpc::harness

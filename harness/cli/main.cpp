@@ -6,8 +6,9 @@
 
 namespace {
 
-// Eigen cuts products of larger matrices into blocks by the sizes of the processor's caches, and
-// their last bits with them. With sizes of our own, results do not depend on the processor's.
+// Eigen splits products of larger matrices into blocks according to the processor's cache sizes,
+// which affects the last bits of the results. Fixed sizes make results independent of the
+// processor.
 constexpr std::ptrdiff_t kKibibyte = 1024;
 constexpr std::ptrdiff_t kFirstCache = 48 * kKibibyte;
 constexpr std::ptrdiff_t kSecondCache = 2048 * kKibibyte;

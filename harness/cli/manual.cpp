@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Text in roff: no character of it is a request, and hyphens are those that can be typed.
+/// Escapes text for roff: no character acts as a request, and hyphens are ASCII ones.
 std::string roff(std::string_view text) {
   std::string out;
   bool at_start = true;
@@ -38,7 +38,7 @@ std::string upper(std::string text) {
   return text;
 }
 
-/// What comes first in a command's description, on one line.
+/// The beginning of a command's description, on one line.
 std::string summary_of(const CLI::App& command) {
   std::string text = command.get_description();
   std::ranges::replace(text, '\n', ' ');
@@ -94,7 +94,7 @@ std::string sections_of_arguments(const CLI::App& command) {
   return text;
 }
 
-/// Pages that belong to this one: its commands', and the one above it.
+/// Related pages: those of its subcommands, and that of its parent.
 std::string related(const NamedCommand& command) {
   std::vector<std::string> pages;
   if (!command.parents.empty()) {

@@ -1,4 +1,4 @@
-// Manual pages, made from the commands.
+// Manual pages, generated from the commands.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace qsmpc::harness {
 /// The page of a command for man(1), section 1, in the macros of man(7).
 [[nodiscard]] std::string manual_page(const NamedCommand& command);
 
-/// Writes the pages of `app` and all of its commands into `folder`, NAME.1 each. Throws IoError.
+/// Writes the pages of `app` and all its commands into `folder` as NAME.1. Throws IoError.
 void write_manual(const CLI::App& app, const std::string& folder);
 
 }  // namespace qsmpc::harness

@@ -29,7 +29,7 @@ std::string default_folder(const std::string& name, const std::string& suffix,
   }
   std::string folder = "out/" + plain_name + "-" + suffix;
   if (plain_name == name && overrides.empty()) return folder;
-  Fnv1a<std::uint32_t> digest;  // the same command has the same folder on every machine
+  Fnv1a<std::uint32_t> digest;  // gives the same command the same folder on every machine
   digest.add(name);
   for (const std::string& override : overrides) digest.add('\0' + override);
   return fmt::format("{}-{:08x}", folder, digest.value());

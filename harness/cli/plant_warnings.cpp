@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostPlants = 16;  // a quarter of a second each
 
-/// Equal for scenarios whose plants answer alike.
+/// Equal for scenarios whose plants respond alike.
 std::string plant_identity(const Scenario& scenario) {
   std::string text = fmt::format("{} {} {} {}", scenario.plant.mjcf, scenario.time_step,
                                  scenario.plant.time_step.value_or(0.0), scenario.model.system);
@@ -44,7 +44,7 @@ void tell_plant_warnings(const Scenario& scenario, const std::vector<std::string
     try {
       tell_plant_warnings(with_plant(scenario, plant), plant);
     } catch (const InputError&) {
-      // The comparison refuses it in its own words.
+      // The comparison itself reports the error.
     }
   }
 }
@@ -57,7 +57,8 @@ void tell_plant_warnings(const Campaign& campaign) {
     try {
       tell_plant_warnings(variant.resolved, variant.name);
     } catch (const InputError&) {
-      // Loading the campaign has made the plant; one that breaks now is an episode's fault.
+      // Loading the campaign created this plant; if it fails now, the episodes report it as a
+      // fault.
     }
   }
 }

@@ -45,9 +45,9 @@ constexpr const char* kPredictExample =
     "FILE has one line a stage and one number an input, separated by commas; a first line may "
     "name\n"
     "the inputs. A certificate of stage k speaks of this plan followed for k stages.";
-// Paths; their numbers are shown in the progress as whole numbers of 32 bits.
+// Most paths; the progress shows their numbers as 32-bit integers.
 constexpr std::int64_t kMostSamples = 1'000'000'000;
-/// Where methods are compared and --monte-carlo is not given.
+/// Number of paths if methods are compared and --monte-carlo is not given.
 constexpr std::int64_t kComparedSamples = 1'000'000;
 constexpr const char* kAllMethods = "all";
 
@@ -66,8 +66,8 @@ struct PredictArguments {
   bool json = false;
 };
 
-/// The inputs of the file, if one is given; the horizon of `scenario` becomes what is to be
-/// predicted.
+/// The inputs from the file, if one is given; sets the horizon of `scenario` to the number of
+/// predicted steps.
 std::optional<Eigen::MatrixXd> take_inputs(const PredictArguments& arguments, Scenario& scenario) {
   if (arguments.steps) scenario.controller.horizon = *arguments.steps;
   if (arguments.inputs.empty()) return std::nullopt;
@@ -81,7 +81,7 @@ std::optional<Eigen::MatrixXd> take_inputs(const PredictArguments& arguments, Sc
   return inputs;
 }
 
-/// The methods that are to be compared, in the order of the table, each once.
+/// The methods to compare, in the order of the table, each once.
 std::vector<std::string> chosen_methods(const std::vector<std::string>& asked) {
   std::vector<std::string> chosen;
   for (const controller::LawMethod& method : controller::law_methods()) {
@@ -92,7 +92,7 @@ std::vector<std::string> chosen_methods(const std::vector<std::string>& asked) {
   return chosen;
 }
 
-/// How many paths are simulated, 0 for none.
+/// Number of simulated paths; 0 for none.
 std::int64_t simulated_paths(const PredictArguments& arguments) {
   if (arguments.methods.empty()) return arguments.samples;
   if (arguments.samples == 0) return kComparedSamples;
@@ -122,7 +122,7 @@ std::string files_table(const std::string& folder) {
   return text;
 }
 
-/// Says on standard error what must not go unseen, and returns the exit code.
+/// Reports on standard error what must not be overlooked, and returns the exit code.
 int conclude(const PredictionReport& report) {
   if (const std::vector<int> stages = contradicted_stages(report); !stages.empty()) {
     std::cerr << fmt::format(
@@ -165,7 +165,7 @@ int predict(const PredictArguments& arguments) {
                                progress.update(static_cast<int>(done), static_cast<int>(total),
                                                "paths");
                              }};
-  const InterruptPatience patience(2);  // the first leaves out the simulation
+  const InterruptPatience patience(2);  // the first interrupt skips the simulation
   const PredictionReport report = predict_scenario(scenario, options);
   write_prediction(report, folder);
   print_result(arguments.json ? prediction_json(report)

@@ -15,7 +15,7 @@ namespace {
 
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 constexpr int kBarWidth = 30;
-constexpr std::size_t kUsualWidth = 80;  // of a terminal that does not tell
+constexpr std::size_t kUsualWidth = 80;  // of a terminal that does not report its width
 
 std::size_t terminal_width() {
   winsize size{};
@@ -45,7 +45,7 @@ void Progress::update(std::int64_t done, std::int64_t total, const std::string& 
   const int tenths = static_cast<int>(10 * done / total);
   if (tenths <= tenths_) return;
   tenths_ = tenths;
-  // Who does not listen is no reason to stop.
+  // A failed write of progress is no reason to stop.
   const std::string line =
       fmt::format("{}: {} of {}{}{}\n", label_, done, total, note.empty() ? "" : ", ", note);
   std::fputs(line.c_str(), stderr);
@@ -56,8 +56,8 @@ void Progress::draw_bar(std::int64_t done, std::int64_t total, const std::string
   std::string bar(static_cast<std::size_t>(filled), '#');
   bar.resize(kBarWidth, '.');
   const std::string line = fmt::format("{:<9} [{}] {}/{}  {}", label_, bar, done, total, note);
-  // Back to the line's start, and clear what a longer note left. A line that wraps could not be
-  // cleared by the next one.
+  // Returns to the start of the line and clears the rest of a longer note. A line that wraps could
+  // not be cleared by the next one.
   std::fputs(("\r\033[K" + printable(line, terminal_width() - 2)).c_str(), stderr);
   std::fflush(stderr);
   drawn_ = true;

@@ -1,5 +1,5 @@
-// How far long work is: a bar that redraws itself on a terminal, plain lines elsewhere, both on
-// standard error.
+// Progress of long work on standard error: a bar that redraws itself on a terminal, plain lines
+// elsewhere.
 #pragma once
 
 #include <chrono>
@@ -10,15 +10,15 @@ namespace qsmpc::harness {
 
 class Progress {
  public:
-  /// label: what is being done, e.g. "driving". quiet: say nothing.
+  /// label: the activity, e.g. "driving". quiet: print nothing.
   Progress(std::string label, bool quiet);
   /// Ends the bar's line.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `done` of `total` (> 0), with a word on the present state. Cheap to call often: it draws at
-  /// most ten times a second, and a plain line at every tenth of the work.
+  /// Reports `done` of `total` (> 0), with a note on the current state. Cheap to call often: it
+  /// redraws the bar at most ten times a second, or prints a plain line at every tenth of the work.
   void update(std::int64_t done, std::int64_t total, const std::string& note = {});
 
  private:

@@ -23,7 +23,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// What suits a page of documentation; a film in an animated picture is large.
+// Suits a page of documentation; animated pictures grow large.
 constexpr int kPictureWidth = 640;
 constexpr int kPictureHeight = 360;
 constexpr int kPictureFps = 12;
@@ -38,13 +38,13 @@ struct RenderArguments {
   std::optional<std::string> size;
   std::optional<int> fps;
   std::optional<double> still;
-  EpisodeVideoOptions video;  // what has one default for all formats
+  EpisodeVideoOptions video;  // options with one default for all formats
   std::string gl = "auto";
   bool verbose = false;
   bool quiet = false;
 };
 
-/// Throws InputError on what is no frame size.
+/// Sets the size from `text`. Throws InputError if it is not a frame size.
 void set_size(const std::string& text, EpisodeVideoOptions& options) {
   const std::optional<FrameSize> size = parse_frame_size(text);
   if (!size) throw InputError({.key = "--size", .found = text, .expected = expected_frame_size()});
@@ -54,7 +54,7 @@ void set_size(const std::string& text, EpisodeVideoOptions& options) {
 
 render::VideoFormat chosen_format(const RenderArguments& arguments) {
   if (arguments.format)
-    return render::video_format(*arguments.format).value();  // its option is checked
+    return render::video_format(*arguments.format).value();  // validated by its option
   if (arguments.out.empty()) return render::VideoFormat::kMp4;
   const std::optional<render::VideoFormat> format = render::video_format_of(arguments.out);
   if (!format) {
@@ -98,7 +98,7 @@ EpisodeVideoOptions chosen_options(const RenderArguments& arguments, const Scena
   return options;
 }
 
-/// Throws InputError where --from, --to or --still lie outside of the longer episode.
+/// Throws InputError if --from, --to or --still lie outside the longer episode.
 void check_times(const RenderArguments& arguments, const EpisodeView& view,
                  const EpisodeView* beside) {
   const double end = std::max(view.duration(), beside == nullptr ? 0.0 : beside->duration());
@@ -116,19 +116,19 @@ void check_times(const RenderArguments& arguments, const EpisodeView& view,
 std::string output_path(const RenderArguments& arguments, const EpisodeVideoOptions& options) {
   if (!arguments.out.empty()) return arguments.out;
   if (arguments.still) return fmt::format("{}/still-{:g}.png", arguments.folder, *arguments.still);
-  // Two episodes in one video are not the video of either.
+  // A video of two episodes must not replace that of either.
   return fmt::format("{}/{}.{}", arguments.folder, arguments.beside ? "beside" : "episode",
                      render::video_format_name(*options.format));
 }
 
-/// Throws InputError where a still picture would not be a PNG.
+/// Throws InputError if a still picture would not be a PNG.
 void check_still(const RenderArguments& arguments) {
   if (!arguments.still || arguments.out.empty() || arguments.out.ends_with(".png")) return;
   throw InputError(
       {.key = "--out", .found = arguments.out, .expected = "a file name that ends with .png"});
 }
 
-/// On standard error: the vehicle's file is not what it was.
+/// Warns on standard error if the vehicle's file has changed.
 void warn_of_changes(const Trace& trace) {
   if (const std::string change = vehicle_change(trace); !change.empty()) print_warnings({change});
 }

@@ -30,7 +30,7 @@ struct ReportArguments {
   std::string folder;
   bool figures = false;
   FigureStyle style{.titles = false};  ///< of the figures
-  std::size_t worst = 0;               ///< episodes to make pages and videos of; 0: none
+  std::size_t worst = 0;               ///< number of episodes to make pages and videos of; 0: none
   bool quiet = false;
 };
 

@@ -45,7 +45,7 @@ std::string example() {
   return text;
 }
 
-/// All files of what is done so far; the numbers last.
+/// Writes all files for the results so far; the numbers last.
 void write_results(const Reproduction& reproduction, const std::string& folder) {
   for (const ResultFigure& figure : reproduction.experiments.back().figures) {
     write_file(folder + "/" + figure.file, svg_figure(figure.panels));

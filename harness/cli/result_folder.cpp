@@ -19,7 +19,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kLongestValue = 60;  // of one that a message shows
+constexpr std::size_t kLongestValue = 60;  // of a value shown in a message
 
 using Values = std::map<std::string, std::string>;  // by dotted key
 

@@ -84,7 +84,7 @@ bool asked_to_tell(const std::vector<std::string>& fail_on, const Summary& summa
 
 int run(const RunArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
-  if (arguments.video) {  // or fail before the work
+  if (arguments.video) {  // fail early, before the work
     refuse_without_memory_to_draw(video_options(scenario));
     if (arguments.gl != "auto") choose_gl(arguments.gl);
   }
@@ -106,7 +106,7 @@ int run(const RunArguments& arguments) {
   write_file(folder + "/" + kScenarioFile, to_yaml(scenario));
 
   const Trace trace = drive(scenario, seed, folder, arguments.quiet);
-  discard_artefacts(folder);  // those of an earlier run, which this trace is not the source of
+  discard_artefacts(folder);  // those of an earlier run do not belong to this trace
   const EpisodeView view(trace);
   write_summary(view, folder, /*with_video=*/false);
   write_controller_log(trace, folder);
@@ -115,7 +115,8 @@ int run(const RunArguments& arguments) {
     std::cerr << (is_plant ? "qsmpc: the plant broke: " : "qsmpc: the controller failed: ")
               << printable(trace.fault, 1000) << '\n';
   }
-  // An episode that ended before it began, e.g. because its plant's file is broken, shows nothing.
+  // An episode that ended before it began, e.g. because its plant's file is broken, has nothing to
+  // show.
   std::string no_video = why_not_drawn(view);
   if (arguments.video && no_video.empty()) no_video = why_no_gl();
   if (arguments.video && !no_video.empty()) std::cerr << "qsmpc: no video: " << no_video << '\n';
@@ -148,7 +149,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                       "to the settings");
   add_force_option(*command, arguments->force);
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
-  // An interrupt has an exit code of its own.
+  // Interrupts are not listed: they have a separate exit code.
   add_fail_on_option(*command, arguments->fail_on,
                      {"reached", "collision", "left_bounds", kFailOnUnsafe, "timeout", "fault",
                       kFailOnRiskExceeded, "none"});

@@ -25,7 +25,7 @@ void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
 
 void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed,
                      const std::string& words) {
-  // The parser itself takes -1 for the largest number.
+  // The parser itself would read -1 as the largest number.
   const auto problem = [](const std::string& text) -> std::string {
     if (parse_integer<std::uint64_t>(text)) return {};
     return "found " + text + ", expected a whole number from 0 to 18446744073709551615";

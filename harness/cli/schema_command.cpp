@@ -20,7 +20,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Each table after a line that says where in the documentation it stands.
+/// Each table, preceded by a line with its place in the documentation.
 std::string tables_text(const std::vector<DocumentTable>& tables) {
   std::string text;
   for (const DocumentTable& table : tables) {
@@ -29,7 +29,7 @@ std::string tables_text(const std::vector<DocumentTable>& tables) {
   return text;
 }
 
-/// What there is of a kind of file.
+/// What is available for a kind of file.
 struct FileKind {
   const char* name;
   nlohmann::ordered_json (*schema)();

@@ -25,11 +25,11 @@ namespace {
 
 using Errors = std::vector<InputError::Where>;
 
-/// What is said of a scenario, campaign or contest.
+/// The verdict on a scenario, campaign or contest file.
 struct FileVerdict {
   std::string file;
   Errors errors{};
-  std::vector<std::string> warnings{};  ///< about a valid scenario
+  std::vector<std::string> warnings{};  ///< warnings about a valid scenario
   std::optional<Campaign> campaign{};   ///< if it is a valid one
   std::optional<LoadedContest> contest{};
 };
@@ -48,7 +48,7 @@ FileVerdict verdict_on_scenario(const std::string& file) {
       verdict.warnings.push_back(std::move(warning));
     }
   } catch (const InputError& error) {
-    verdict.errors.push_back(error.where());  // of a file that was changed since
+    verdict.errors.push_back(error.where());  // the file has changed since
   }
   return verdict;
 }
@@ -58,7 +58,7 @@ FileVerdict verdict_on_contest(const std::string& file) {
     return {.file = file, .contest = load_contest(file)};
   } catch (const InputError& error) {
     Errors errors = validate_contest_file(file);
-    if (errors.empty()) errors.push_back(error.where());  // of a file that was changed since
+    if (errors.empty()) errors.push_back(error.where());  // the file has changed since
     return {.file = file, .errors = std::move(errors)};
   }
 }
@@ -70,7 +70,7 @@ FileVerdict verdict_on(const std::string& file) {
     return {.file = file, .campaign = load_campaign(file)};
   } catch (const InputError& error) {
     Errors errors = validate_campaign_file(file);
-    if (errors.empty()) errors.push_back(error.where());  // of a file that was changed since
+    if (errors.empty()) errors.push_back(error.where());  // the file has changed since
     return {.file = file, .errors = std::move(errors)};
   }
 }
@@ -130,7 +130,7 @@ int validate(const std::vector<std::string>& files, bool json) {
     text += as_text(verdict);
     results.push_back(as_json(verdict));
   }
-  // One file is one object, as documented; several are an array of them.
+  // As documented, one file gives one object; several give an array.
   const auto& value = results.size() == 1 ? results.front() : results;
   print_result(json ? json_text(value) : text);
   return all_valid ? kDone : kBadInput;

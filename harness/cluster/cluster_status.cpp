@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The last start of each task in the last launch.
+/// The report of the last start of each task in `launch`.
 std::vector<TaskReport> last_reports(const std::string& folder, std::int64_t launch) {
   std::map<int, TaskReport> last;
   for (TaskReport& report : task_reports(folder)) {
@@ -42,14 +42,14 @@ const TaskState* state_of(const ClusterStatus& status, int task) {
   return found == status.states.end() ? nullptr : &*found;
 }
 
-/// Whether a task works, as far as the launcher knows.
+/// Whether a task is at work, as far as the launcher knows.
 bool is_at_work(const ClusterStatus& status, const TaskReport& report) {
   if (report.word != TaskWord::kWorking) return false;
   const TaskState* state = state_of(status, report.holder.task);
   return state == nullptr || state->condition == TaskCondition::kRunning;
 }
 
-/// Episodes per second of the tasks at work, each by its own clock.
+/// Total episodes per second of the tasks at work, each by its own clock.
 double rate_of(const ClusterStatus& status) {
   double rate = 0.0;
   for (const TaskReport& report : status.tasks) {

@@ -1,5 +1,5 @@
-// How far a campaign of tasks is, as anybody who can read its folder may ask at any time. No task's
-// store is opened: what is known of episodes is in the marks of finished leases.
+// The progress of a campaign driven by tasks, for any process that can read its folder, at any
+// time. No task's store is opened: the episode counts come from the files of finished leases.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@
 
 namespace qsmpc::harness {
 
-/// Counts the episodes of finished leases; each lease is read once.
+/// Counts the episodes of finished leases, reading each lease once.
 class FinishedEpisodes {
  public:
-  /// Looks at the campaign in `folder`. Throws IoError.
+  /// Reads the leases finished since the last call in the campaign's `folder`. Throws IoError.
   void look(const std::string& folder);
 
   [[nodiscard]] std::int64_t leases() const { return std::ssize(leases_); }
@@ -33,25 +33,25 @@ class FinishedEpisodes {
 };
 
 struct ClusterStatus {
-  CampaignStatus campaign;  ///< running: who waits for the tasks or gathers
+  CampaignStatus campaign;  ///< running: the process that waits for the tasks or gathers
   std::int64_t leases = 0;
-  std::int64_t finished = 0;    ///< leases
-  std::int64_t held = 0;        ///< that a task drives, or drove when it was killed
-  std::int64_t given_back = 0;  ///< to be driven by others
-  std::int64_t free = 0;        ///< nobody had them
+  std::int64_t finished = 0;    ///< finished leases
+  std::int64_t held = 0;        ///< leases that a task drives, or drove when it was killed
+  std::int64_t given_back = 0;  ///< leases to be driven by other tasks
+  std::int64_t free = 0;        ///< leases never claimed
   std::optional<TaskLaunch> launch{};
-  /// Of each task, the report of its last start in the last launch.
+  /// The report of each task's last start in the last launch.
   std::vector<TaskReport> tasks{};
-  std::vector<TaskState> states{};  ///< what the launcher says
-  std::string trouble{};            ///< why it does not
+  std::vector<TaskState> states{};  ///< according to the launcher
+  std::string trouble{};            ///< why the launcher could not be asked; empty otherwise
 };
 
-/// Reads the folder, asks the launcher, and changes nothing. Throws InputError where it has no
-/// plan, IoError where it cannot be read.
+/// Reads the folder and asks the launcher, without changing anything. Throws InputError if the
+/// folder has no plan, IoError if it cannot be read.
 [[nodiscard]] ClusterStatus cluster_status(const std::string& folder);
 
 [[nodiscard]] std::string cluster_status_table(const ClusterStatus& status);
-/// As status_json, with the key "cluster"; docs/cluster.md describes it.
+/// Like status_json, with the additional key "cluster"; docs/cluster.md describes it.
 [[nodiscard]] std::string cluster_status_json(const ClusterStatus& status);
 
 }  // namespace qsmpc::harness

@@ -50,7 +50,7 @@ std::string names_of(const std::vector<TaskReport>& tasks) {
   return fmt::format("{} {}", names.size() == 1 ? "task" : "tasks", fmt::join(names, ", "));
 }
 
-/// Refuses to read what others are writing.
+/// Refuses to gather while tasks are writing.
 void refuse_working(const std::string& folder, const std::vector<TaskReport>& reports,
                     const GatherOptions& options) {
   if (options.tasks_have_ended) return;
@@ -67,7 +67,7 @@ void refuse_working(const std::string& folder, const std::vector<TaskReport>& re
                 " at work; gather once they have ended, or end them with qsmpc campaign cancel");
 }
 
-/// A folder of copies that goes when it is no longer needed.
+/// A folder of copied stores, removed on destruction.
 class RecoveredStores {
  public:
   explicit RecoveredStores(const std::string& folder)
@@ -81,8 +81,8 @@ class RecoveredStores {
     fs::remove_all(path_, ignored);
   }
 
-  /// Makes a whole store of one whose writer was killed; returns its folder. Its traces are those
-  /// of `task`.
+  /// Completes a copy of a store whose writer was killed; returns its folder. Its traces are those
+  /// of `task`, by a link.
   std::string recover(const std::string& task, const LeasePlan& plan) {
     std::string copy = path_ + "/" + fs::path(task).filename().string();
     std::error_code error;

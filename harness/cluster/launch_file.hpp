@@ -1,5 +1,5 @@
-// How the tasks of a campaign were started last, kept in its folder so that anybody who sees it can
-// ask about them, end them, and start them again.
+// The last launch of a campaign's tasks, kept in its folder so that any process with access can
+// query, end and restart them.
 #pragma once
 
 #include <chrono>
@@ -11,13 +11,13 @@ namespace qsmpc::harness {
 
 struct TaskLaunch {
   std::int64_t launch = 0;               ///< 1, 2, …
-  std::string options{};                 ///< of the launcher, as launch_options_text
-  std::string record{};                  ///< the launcher's own; empty while it starts them
-  int jobs = 0;                          ///< episodes at the same time, of each task; 0: one a core
+  std::string options{};                 ///< the launcher's, as launch_options_text
+  std::string record{};                  ///< the launcher's record; empty while it starts the tasks
+  int jobs = 0;                          ///< concurrent episodes per task; 0: one per core
   std::chrono::seconds lost_after{120};  ///< LeaseQueue::Options::lost_after
 };
 
-/// Nothing where no tasks were ever started. Throws IoError.
+/// The last launch; nothing if no tasks were ever started. Throws IoError.
 [[nodiscard]] std::optional<TaskLaunch> read_task_launch(const std::string& folder);
 
 /// Throws IoError.

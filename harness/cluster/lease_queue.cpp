@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFinishedEnding = ".json";
-// Claims are as long as they were, so that writing them again needs no room on a full disk.
+// Claims have a fixed length, so that rewriting them needs no space on a full disk.
 constexpr std::size_t kClaimBytes = 512;
 
 std::string claim_path(const std::string& folder, std::int64_t lease, std::int64_t generation) {
@@ -42,7 +42,7 @@ std::string claim_text(const LeaseHolder& holder, std::int64_t beats, bool given
   return text + "\n";
 }
 
-/// Nothing of a claim that is half written.
+/// Nothing if the claim is only partly written.
 std::optional<LeaseClaim> claim_of(const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
   try {
@@ -57,7 +57,7 @@ std::optional<LeaseClaim> claim_of(const std::string& text) {
   }
 }
 
-/// The highest generation of each lease's claims.
+/// The highest claim generation of each lease.
 std::map<std::int64_t, std::int64_t> latest_generations(const std::string& folder) {
   std::map<std::int64_t, std::int64_t> latest;
   for (const std::string& name : names_in_folder(cluster_path(folder, kClaimsFolder))) {
@@ -140,7 +140,7 @@ bool LeaseQueue::all_finished() const {
   return all_finished_;
 }
 
-/// Makes the claim of a generation, unless another has made it.
+/// Creates the claim of a generation, unless another task has created it; returns whether it did.
 bool LeaseQueue::take(std::int64_t lease, std::int64_t generation) {
   const std::string text = claim_text(options_.me, ++beats_, false);
   if (!create_shared_file(claim_path(folder_, lease, generation), text)) return false;
@@ -149,8 +149,8 @@ bool LeaseQueue::take(std::int64_t lease, std::int64_t generation) {
   return true;
 }
 
-/// The lowest lease that nobody ever had. That a lease was claimed once stays so: what was seen to
-/// be claimed is never tried again.
+/// Claims the lowest lease that was never claimed. A claim is never removed, so leases seen as
+/// claimed are not tried again.
 std::optional<std::int64_t> LeaseQueue::claim_fresh() {
   if (!claimed_) {
     claimed_.emplace();
@@ -164,7 +164,8 @@ std::optional<std::int64_t> LeaseQueue::claim_fresh() {
 }
 
 std::optional<std::int64_t> LeaseQueue::claim_again() {
-  // In this order: what is finished meanwhile is only driven once more, in vain.
+  // `finished` is read last, so that a lease finished in between is recognised. One finished even
+  // later is at worst driven once more, in vain.
   const std::map<std::int64_t, std::int64_t> latest = latest_generations(folder_);
   const std::set<std::int64_t> finished = finished_leases(folder_);
   all_finished_ = std::distance(finished.begin(), finished.lower_bound(needed_)) == needed_;
@@ -177,7 +178,7 @@ std::optional<std::int64_t> LeaseQueue::claim_again() {
   return std::nullopt;
 }
 
-/// Whether nobody drives a lease that is not finished.
+/// Whether no task drives the unfinished lease any more.
 bool LeaseQueue::is_lost(std::int64_t lease, std::int64_t generation) {
   const auto text = read_shared_file(claim_path(folder_, lease, generation));
   if (!text) return false;
@@ -205,7 +206,7 @@ void LeaseQueue::finish(std::int64_t lease, const std::vector<SeedOutcomes>& out
   }
   const Json json = {{"lease", lease}, {"task", options_.me.name()}, {"seeds", std::move(seeds)}};
   const std::string path = finished_path(folder_, lease);
-  // Another that drives the same lease writes a file of its own, and the same into it.
+  // Another task that drives the same lease writes the same content to a file of its own name.
   const std::string own = fmt::format("{}.{}", path, options_.me.name());
   write_file(own, json_text(json));
   commit_file(own, path);

@@ -1,10 +1,10 @@
-// Who drives which lease of a campaign: files in a folder that machines share, and nothing else.
+// Assigns the leases of a campaign to tasks, using only files in a folder that the machines share.
 //
-// A claim is a file that only one can make. Whoever takes a lease over makes the file of the next
-// generation, so that no file is ever removed or renamed from under anybody. The holder counts up a
-// number in its claim; where it does not change for a while, by the clock of whoever looks, the
-// holder is lost. No two clocks are ever compared. A holder that was only slow drives on: episodes
-// are the same whoever drives them, and are gathered once.
+// A claim is a file that only one task can create. A task that takes a lease over creates the file
+// of the next generation, so that no file in use is ever removed or renamed. The holder increments
+// a counter in its claim; if it does not change for a while, by the observer's clock, the holder is
+// considered lost. Clocks of different machines are never compared. A holder that was merely slow
+// continues: episodes are the same whichever task drives them, and are gathered once.
 #pragma once
 
 #include <chrono>
@@ -24,18 +24,18 @@ namespace qsmpc::harness {
 /// A task at work.
 struct LeaseHolder {
   int task = 0;             ///< its number, from 1
-  int start = 1;            ///< how often the task was started by then
-  std::int64_t launch = 0;  ///< the start of all tasks that it belongs to; higher is later
+  int start = 1;            ///< number of its starts so far
+  std::int64_t launch = 0;  ///< the launch of all tasks that it belongs to; higher is later
   std::string host{};
   long process = 0;
 
-  /// "TASK-START", the name of its folder; of no two holders the same.
+  /// "TASK-START", the name of its folder; unique among holders.
   [[nodiscard]] std::string name() const { return fmt::format("{}-{}", task, start); }
 
   friend bool operator==(const LeaseHolder&, const LeaseHolder&) = default;
 };
 
-/// What a claim says.
+/// The contents of a claim.
 struct LeaseClaim {
   std::int64_t lease = 0;
   std::int64_t generation = 0;
@@ -43,28 +43,28 @@ struct LeaseClaim {
   bool given_back = false;
 };
 
-/// The latest claim of each lease in the campaign's `folder` that has one and is not finished.
-/// Claims that are being written are left out. Throws IoError.
+/// The latest claim of each claimed, unfinished lease in the campaign's `folder`. Claims that are
+/// being written are skipped. Throws IoError.
 [[nodiscard]] std::vector<LeaseClaim> open_claims(const std::string& folder);
 
-/// The leases that are finished. Throws IoError.
+/// The finished leases. Throws IoError.
 [[nodiscard]] std::set<std::int64_t> finished_leases(const std::string& folder);
 
-/// How one seed's episodes ended, by variant in the campaign's order.
+/// The outcomes of one seed's episodes, by variant in the campaign's order.
 struct SeedOutcomes {
-  std::int64_t seed_index = 0;  ///< in the campaign's seeds
+  std::int64_t seed_index = 0;  ///< index in the campaign's seeds
   std::vector<std::string> outcomes{};
   std::vector<bool> unsafe{};
 
   friend bool operator==(const SeedOutcomes&, const SeedOutcomes&) = default;
 };
 
-/// How the episodes of a finished lease ended, by seed. Throws IoError where it cannot be read.
+/// The outcomes of a finished lease's episodes, by seed. Throws IoError if they cannot be read.
 [[nodiscard]] std::vector<SeedOutcomes> finished_outcomes(const std::string& folder,
                                                           std::int64_t lease);
 
-/// One task's view of the leases. May be used by several threads at once. All members throw IoError
-/// where the folder cannot be read or written.
+/// One task's view of the leases. Thread-safe. All members throw IoError if the folder cannot be
+/// read or written.
 class LeaseQueue {
  public:
   using Clock = std::chrono::steady_clock;
@@ -72,33 +72,33 @@ class LeaseQueue {
   struct Options {
     std::int64_t leases = 1;
     LeaseHolder me{};
-    /// After how long without a sign of its holder a lease is taken over.
+    /// A lease is taken over after this time without a sign of its holder.
     Clock::duration lost_after = std::chrono::seconds(120);
-    /// This process's clock; tests have their own.
+    /// This process's clock, replaceable by tests.
     std::function<Clock::time_point()> now = Clock::now;
   };
 
-  /// `folder`: the campaign's, with a plan.
+  /// `folder`: the campaign's folder, which has a plan.
   LeaseQueue(std::string folder, Options options);
 
-  /// Takes a lease: the first that nobody had, else one that was given back, or whose holder is
-  /// lost, or belongs to an earlier launch, or to an earlier start of this task. Nothing where
-  /// there is none at the moment.
+  /// Claims a lease: the first that was never claimed, else one that was given back or whose holder
+  /// is lost or belongs to an earlier launch or an earlier start of this task. Nothing if none is
+  /// available at the moment.
   [[nodiscard]] std::optional<std::int64_t> claim();
 
-  /// From now on only the first `leases` are given out, and have to be finished.
+  /// From now on only the first `leases` leases are claimed and have to be finished.
   void need(std::int64_t leases);
 
-  /// Whether all leases that are needed are finished, as of the last `claim`.
+  /// Whether all needed leases were finished at the last `claim`.
   [[nodiscard]] bool all_finished() const;
 
-  /// To be called once the rows of all of the lease's episodes are on the disk.
+  /// Marks the lease as finished. To be called once the rows of all its episodes are on disk.
   void finish(std::int64_t lease, const std::vector<SeedOutcomes>& outcomes);
 
-  /// Lets others have all leases that this task holds.
+  /// Releases all leases that this task holds, for other tasks.
   void give_back();
 
-  /// Shows that the holder of this task's leases is there. To be called several times within
+  /// Shows that this task, which holds its leases, is alive. To be called several times within
   /// `lost_after`.
   void beat();
 
@@ -117,8 +117,8 @@ class LeaseQueue {
 
   const std::string folder_;
   const Options options_;
-  mutable std::mutex mutex_;                         // of what follows
-  std::optional<std::set<std::int64_t>> claimed_{};  // by anybody, at the first look
+  mutable std::mutex mutex_;                         // guards the members below
+  std::optional<std::set<std::int64_t>> claimed_{};  // by any task, at the first look
   std::int64_t needed_;
   std::int64_t next_fresh_ = 0;
   std::int64_t beats_ = 0;

@@ -13,7 +13,7 @@ LeaseSource::LeaseSource(const LeasePlan& plan, const std::string& folder, Lease
 }
 
 std::optional<EpisodeTask> LeaseSource::next(const std::function<bool()>& stopped) {
-  // Being asked to stop is looked for this often while there is nothing to do.
+  // Polling interval of `stopped` while there is nothing to do.
   constexpr auto kLongestWait = std::chrono::milliseconds(100);
   std::unique_lock lock(mutex_);
   while (!stopped()) {
@@ -33,7 +33,7 @@ std::optional<EpisodeTask> LeaseSource::next(const std::function<bool()>& stoppe
   return std::nullopt;
 }
 
-/// All variants of a seed before the next seed.
+/// All variants of a seed come before the next seed.
 std::optional<EpisodeTask> LeaseSource::next_of_open() {
   const auto variants = static_cast<std::int64_t>(plan_.identity.variants.size());
   for (auto& [lease, open] : open_) {
@@ -59,7 +59,7 @@ void LeaseSource::open(std::int64_t lease) {
   changed_.notify_all();
 }
 
-/// Tells the rule what was finished since the last time.
+/// Feeds the rule with the leases finished since the last call.
 void LeaseSource::ask_rule() {
   for (const std::int64_t lease : finished_leases(folder_)) {
     if (!told_.insert(lease).second) continue;
@@ -88,7 +88,7 @@ void LeaseSource::stored(const EpisodeTask& task, const EpisodeRow& row) {
   if (open.stored < std::ssize(open.seeds) * std::ssize(seed.outcomes)) return;
   queue_.finish(lease, open.seeds);
   open_.erase(lease);
-  next_look_ = {};  // all may be finished now
+  next_look_ = {};  // all leases may be finished now: look at once
   changed_.notify_all();
 }
 

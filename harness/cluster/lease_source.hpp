@@ -1,4 +1,4 @@
-// The episodes of the leases that a task takes, one lease after the other.
+// The episodes of the leases that a task claims one after the other.
 #pragma once
 
 #include <atomic>
@@ -21,15 +21,15 @@
 
 namespace qsmpc::harness {
 
-/// Takes the next lease when all episodes of those before are begun, and says that one is finished
-/// as soon as its last row is stored. Where nothing can be taken, it waits until all leases of the
-/// campaign are finished, or some holder is lost. Where the campaign has a rule that stops it, the
-/// rule is told of all that any task has finished, and leases beyond the seeds that suffice are not
-/// taken.
+/// Claims the next lease when all episodes of the previous ones have begun, and marks a lease as
+/// finished as soon as its last row is stored. If no lease is available, it waits until all leases
+/// of the campaign are finished or some holder is lost. If the campaign has a stop rule, the rule
+/// is fed with all that any task has finished, and leases beyond the seeds that suffice are not
+/// claimed.
 class LeaseSource : public EpisodeSource {
  public:
-  /// `folder`: the campaign's. `pause`: between two looks at it while nothing can be taken. The
-  /// references outlive it.
+  /// `folder`: the campaign's. `pause`: time between two polls of it while no lease is available.
+  /// The references must outlive this object.
   LeaseSource(const LeasePlan& plan, const std::string& folder, LeaseQueue& queue,
               std::chrono::steady_clock::duration pause);
 
@@ -37,22 +37,22 @@ class LeaseSource : public EpisodeSource {
   [[nodiscard]] bool is_wanted(const EpisodeTask& task) const override {
     return task.seed_index < seed_end_;
   }
-  /// Throws IoError, and what `fail` was told.
+  /// Throws IoError, and the error passed to `fail`.
   std::optional<EpisodeTask> next(const std::function<bool()>& stopped) override;
   /// Throws IoError.
   void stored(const EpisodeTask& task, const EpisodeRow& row) override;
 
-  /// Makes all calls of `next` throw `error`, from now on.
+  /// From now on all calls of `next` throw `error`; the first error counts.
   void fail(std::exception_ptr error);
   [[nodiscard]] bool has_failed() const;
-  /// Throws what `fail` was told, if it was called.
+  /// Throws the error passed to `fail`, if any.
   void rethrow_failure() const;
 
  private:
-  /// A lease of which not all episodes are stored.
+  /// A lease whose episodes are not all stored yet.
   struct OpenLease {
-    std::int64_t begun = 0;   ///< episodes that were given out
-    std::int64_t stored = 0;  ///< of these
+    std::int64_t begun = 0;   ///< episodes returned by `next`
+    std::int64_t stored = 0;  ///< of these, the episodes stored
     std::vector<SeedOutcomes> seeds{};
   };
 
@@ -66,13 +66,13 @@ class LeaseSource : public EpisodeSource {
   LeaseQueue& queue_;
   std::atomic<std::int64_t> seed_end_;  // no seed from here on is driven
   const Clock::duration pause_;
-  mutable std::mutex mutex_;  // of what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   std::exception_ptr error_;
   Clock::time_point next_look_{};
   std::map<std::int64_t, OpenLease> open_;
   std::optional<StopRule> rule_;
-  std::set<std::int64_t> told_;  ///< finished leases that the rule was told of
+  std::set<std::int64_t> told_;  ///< finished leases already passed to the rule
 };
 
 }  // namespace qsmpc::harness

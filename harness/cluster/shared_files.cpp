@@ -17,7 +17,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr mode_t kSharedFileMode = 0666;  // what the user's umask leaves of it
+constexpr mode_t kSharedFileMode = 0666;  // reduced by the user's umask
 constexpr mode_t kSharedFolderMode = 0777;
 
 [[noreturn]] void fail_shared(const std::string& path, const std::string& doing, int error) {
@@ -25,7 +25,7 @@ constexpr mode_t kSharedFolderMode = 0777;
                 std::generic_category().message(error));
 }
 
-/// A descriptor that is closed however the scope is left.
+/// A file descriptor that is closed on destruction.
 class SharedFile {
  public:
   SharedFile(const std::string& path, int flags) : path_(path) {
@@ -40,7 +40,7 @@ class SharedFile {
     if (descriptor_ >= 0) ::close(descriptor_);
   }
 
-  /// Why it is not open; 0 where it is.
+  /// The errno of opening; 0 if it succeeded.
   [[nodiscard]] int error() const { return error_; }
 
   [[nodiscard]] std::string read() const {
@@ -55,7 +55,8 @@ class SharedFile {
     }
   }
 
-  /// A network's file system may say only when the file is closed that there is no room for it.
+  /// Writes all bytes and closes the file: a network file system may report a full disk only on
+  /// close.
   void write(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
@@ -93,7 +94,7 @@ bool create_shared_file(const std::string& path, const std::string& text) {
   try {
     file.write(text);
   } catch (...) {
-    ::unlink(path.c_str());  // another may have more luck
+    ::unlink(path.c_str());  // another task may succeed
     throw;
   }
   return true;
@@ -113,7 +114,7 @@ bool create_shared_folder(const std::string& path) {
   const std::string parent = std::filesystem::path(path).parent_path().string();
   SharedFile folder(parent, O_RDONLY | O_DIRECTORY);
   if (folder.error() != 0) fail_shared(parent, "opened", folder.error());
-  folder.write({});  // its names, to the disk
+  folder.write({});  // flushes its entries to disk
   return true;
 }
 

@@ -1,5 +1,6 @@
-// Files of a folder that several machines share, often by a network: what is atomic there, and what
-// is durable when a call returns. All throw IoError with the path and the system's words.
+// Files in a folder that several machines share, often over a network: states what is atomic there,
+// and what is durable when a call returns. All functions throw IoError with the path and the
+// system's message.
 #pragma once
 
 #include <optional>
@@ -8,23 +9,23 @@
 
 namespace qsmpc::harness {
 
-/// The content of a file; nothing where there is none. It may be half of what another machine is
-/// writing at the time.
+/// The content of a file; nothing if it does not exist. The content may be incomplete while another
+/// machine is writing it.
 [[nodiscard]] std::optional<std::string> read_shared_file(const std::string& path);
 
-/// Makes the file `path` with `text`, unless there is one: of all that try at the same time, on any
-/// machine, one makes it. Returns whether this call did. Others may see the file before its text.
-/// One that cannot be written is removed.
+/// Creates the file `path` with `text` unless it exists. Of all simultaneous attempts, on any
+/// machine, exactly one succeeds; returns whether this one did. Others may see the file before its
+/// text. If the text cannot be written, the file is removed.
 [[nodiscard]] bool create_shared_file(const std::string& path, const std::string& text);
 
-/// Puts `text` in the place of the first bytes of a file, which is there and takes no more room for
-/// it where it was as long before. Never makes the file.
+/// Overwrites the beginning of an existing file with `text`; this needs no additional disk space if
+/// the file was already as long. Never creates the file.
 void overwrite_shared_file(const std::string& path, const std::string& text);
 
-/// Makes the folder `path`, unless there is something of that name. Returns whether this call did.
+/// Creates the folder `path` unless something of that name exists. Returns whether this call did.
 [[nodiscard]] bool create_shared_folder(const std::string& path);
 
-/// Names of what is in a folder, in order.
+/// The sorted names of a folder's entries.
 [[nodiscard]] std::vector<std::string> names_in_folder(const std::string& folder);
 
 }  // namespace qsmpc::harness

@@ -18,14 +18,14 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Tasks of `launch` that wait or work, as far as its launcher knows.
+/// The number of tasks of `launch` that are waiting or running, as far as its launcher knows.
 std::ptrdiff_t count_unended(Launcher& launcher, const TaskLaunch& launch) {
   return std::ranges::count_if(launcher.states(launch.record), [](const TaskState& task) {
     return task.condition == TaskCondition::kWaiting || task.condition == TaskCondition::kRunning;
   });
 }
 
-/// Whether any task shows that it works. A launcher that stays knows nothing of tasks whose
+/// Whether any task shows signs of work. A launcher that stays cannot know the state of tasks whose
 /// conductor ran on another machine, which may have failed.
 bool any_gives_signs(const std::string& folder, const TaskLaunch& launch) {
   const auto sleep = [] {
@@ -85,7 +85,7 @@ StartedTasks start_tasks(const std::string& folder, TaskLaunch request,
   TaskLaunch& launch = started.launch;
   launch.launch = before.launch + 1;
   launch.record.clear();
-  // Written before the first task looks at it.
+  // Must be written before the first task reads it.
   write_task_launch(launch, folder);
   LaunchRequest tasks{.folder = folder,
                       .worker = {program, "campaign", "work", folder},

@@ -1,4 +1,4 @@
-// The tasks of a campaign started, on this machine or others, and what they are to begin with.
+// Starts the tasks of a campaign, on this machine or others, and prepares their folder.
 #pragma once
 
 #include <chrono>
@@ -13,30 +13,30 @@
 
 namespace qsmpc::harness {
 
-/// Gives `folder`, which is there, the plan of `campaign`, unless it has one. lease_seeds: of a new
-/// plan; 0: by default_lease_seeds with `at_once` episodes at the same time.
+/// Writes the plan of `campaign` to the existing folder `folder`, unless it has one. lease_seeds:
+/// seeds per lease of a new plan; 0: by default_lease_seeds for `at_once` concurrent episodes.
 ///
-/// Throws InputError where the plan that it has is another campaign's, or has leases of another
-/// size than is asked for, and where the folder is that of a campaign without tasks; IoError.
+/// Throws InputError if the existing plan is of another campaign or of another lease size than
+/// requested, or if the folder is that of a campaign without tasks; IoError.
 void plan_tasks(const Campaign& campaign, const std::string& folder, std::int64_t lease_seeds,
                 std::int64_t at_once);
 
-/// Tasks that were started.
+/// The tasks started.
 struct StartedTasks {
   std::unique_ptr<Launcher> launcher;
   TaskLaunch launch;
 };
 
-/// Starts tasks for the campaign in `folder`, which has a plan, as `request` says: of its `launch`
-/// and `record` nothing is used. `program`: this one's path.
+/// Starts tasks for the campaign in `folder`, which has a plan, according to `request`, whose
+/// members `launch` and `record` are ignored. `program`: the path of this program.
 ///
-/// Throws InputError where the launcher's options are wrong, IoError where tasks that were started
-/// before are still at work, or none can be started.
+/// Throws InputError if the launcher's options are invalid, IoError if tasks started before are
+/// still at work, or if none can be started.
 [[nodiscard]] StartedTasks start_tasks(const std::string& folder, TaskLaunch request,
                                        const std::string& program);
 
-/// Has the tasks that were started last ended, without waiting for it. Throws InputError where none
-/// were, IoError.
+/// Requests the end of the tasks of the last launch, without waiting for it. Throws InputError if
+/// there was none, IoError.
 void cancel_tasks(const std::string& folder);
 
 }  // namespace qsmpc::harness

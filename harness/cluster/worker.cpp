@@ -26,9 +26,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A holder shows that it is there this many times before it is taken for lost.
+// Heartbeats of a holder per `lost_after`, the time after which it is considered lost.
 constexpr int kBeats = 8;
-constexpr int kLooks = 60;  // looks for leases, likewise
+constexpr int kLooks = 60;  // polls for leases per `lost_after`
 
 std::string this_host() {
   std::array<char, HOST_NAME_MAX + 1> name{};
@@ -87,7 +87,8 @@ class Worker {
     source_.rethrow_failure();
   }
 
-  /// Where it cannot, the folder is gone or full: nothing that is driven from now on can be kept.
+  /// If it fails, the folder is missing or full: no further episode could be stored, so the run
+  /// fails.
   void beat_until(const std::stop_token& stop) {
     try {
       std::mutex mutex;
@@ -112,13 +113,14 @@ class Worker {
                        .beat = ++beats_});
   }
 
-  /// Tells others, as far as the folder can still be written: what made it fail is what is thrown.
+  /// Informs other tasks, as far as the folder can still be written. Errors here are dropped: the
+  /// original failure is what is thrown.
   void give_up(const std::string& why) noexcept {
     try {
       queue_.give_back();
       report(TaskWord::kFailed, why);
     } catch (const std::exception&) {
-      // They find out by themselves, since nothing of it changes any more.
+      // Other tasks will find out, since this one's heartbeat has stopped.
     }
   }
 
@@ -130,7 +132,7 @@ class Worker {
   LeaseQueue queue_;
   LeaseSource source_;
   std::atomic<std::int64_t> episodes_ = 0;
-  std::int64_t beats_ = 0;  // one thread at a time reports
+  std::int64_t beats_ = 0;  // only one thread at a time reports
 };
 
 }  // namespace

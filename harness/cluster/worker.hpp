@@ -1,8 +1,8 @@
-// A task: one process of the many, on any machine, that drive a campaign through its folder.
+// A task: one of the processes, on any machine, that drive a campaign together through its folder.
 //
-// Its store is in a folder that this start of the task made for itself and nobody else writes to.
-// Nothing that it writes is ever written by another, so that a network's file system need neither
-// lock files nor keep memory of several machines the same.
+// Its store is in a folder created by this start of the task, to which no other process writes.
+// Nothing that it writes is ever written by another process, so a network file system needs neither
+// file locks nor memory shared coherently across machines.
 #pragma once
 
 #include <cstdint>
@@ -15,24 +15,24 @@
 namespace qsmpc::harness {
 
 struct WorkerOptions {
-  int task = 1;  ///< its number, ≥ 1; of several that share one, each has a store of its own
-  int jobs = 1;  ///< ≥ 1, episodes at the same time
+  int task = 1;  ///< its number, ≥ 1; tasks with the same number still have separate stores
+  int jobs = 1;  ///< ≥ 1, concurrent episodes
   /// As in CampaignOptions.
   std::function<bool()> should_stop{};
   std::function<bool()> should_hurry{};
 };
 
 struct WorkerEnd {
-  bool all_finished = false;  ///< all leases of the campaign are; else it was asked to stop
-  std::int64_t episodes = 0;  ///< that it drove
+  bool all_finished = false;  ///< all leases of the campaign are finished; else it was told to stop
+  std::int64_t episodes = 0;  ///< episodes that it drove
   double seconds = 0.0;
 };
 
-/// Drives leases of `campaign`, which is `planned_campaign` of the plan of `folder`, until all are
-/// finished or it is asked to stop; leases that it began and did not finish are given back.
+/// Drives leases of `campaign`, the `planned_campaign` of the plan in `folder`, until all are
+/// finished or it is asked to stop; leases that it has begun but not finished are given back.
 ///
-/// Throws IoError where the folder or its own store cannot be written, e.g. on a full disk. What it
-/// has finished stays; the leases that it has begun are driven again by others.
+/// Throws IoError if the folder or its own store cannot be written, e.g. because the disk is full.
+/// What it has finished is kept; the leases that it has begun are driven again by other tasks.
 [[nodiscard]] WorkerEnd run_worker(const LeasePlan& plan, const Campaign& campaign,
                                    const std::string& folder, const WorkerOptions& options);
 

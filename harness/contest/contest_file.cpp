@@ -66,7 +66,7 @@ std::vector<InputError::Where> validate_contest_file(const std::string& path_or_
     const std::string path = find_contest(path_or_name);
     Problems problems(path);
     (void)read_contest_file(path, problems);
-    // What is wrong with a setting shows in every scenario.
+    // A problem with a setting is reported once per scenario; keep only the first report.
     std::vector<InputError::Where> once;
     std::unordered_set<std::string> seen;
     for (const InputError::Where& where : problems.sorted()) {

@@ -9,14 +9,14 @@
 
 namespace qsmpc::harness {
 
-/// The contest file as it was given, and what is made of its drives, in the contest's folder.
+/// The copy of the contest file in the contest's folder.
 inline constexpr const char* kContestCopy = "contest.yaml";
 
-/// A contest whose every drive has been checked.
+/// A contest, with all of its drives checked.
 struct LoadedContest {
   Contest contest{};
   Campaign
-      search{};  ///< all candidates with the tuning's seeds; no variants where nothing is chosen
+      search{};  ///< all candidates with the seeds of the tuning; no variants if nothing is chosen
   Campaign drives{};  ///< with the first candidate of each controller
 };
 
@@ -25,23 +25,23 @@ struct LoadedContest {
 [[nodiscard]] std::string find_contest(const std::string& path_or_name);
 
 /// Loads the contest with all scenarios, plants and candidates checked. Throws InputError with the
-/// first thing that is wrong.
+/// first problem.
 [[nodiscard]] LoadedContest load_contest(const std::string& path_or_name);
 
-/// Everything that is wrong with the contest; empty if it is valid.
+/// All problems of the contest; empty if it is valid.
 [[nodiscard]] std::vector<InputError::Where> validate_contest_file(const std::string& path_or_name);
 
 /// Whether `path_or_name` is a file that looks like a contest, or the name of a shipped one.
 [[nodiscard]] bool is_contest_file(const std::string& path_or_name);
 
-/// The drives of a loaded contest with the candidates that were chosen, and those that are timed.
-/// Throws InputError for files that were changed since.
+/// The drives of a loaded contest with the chosen candidates, and the timed drives. Both throw
+/// InputError if files have changed since in a way that makes a drive invalid.
 [[nodiscard]] Campaign chosen_drives(const Contest& contest, const ContestChoice& choice);
 [[nodiscard]] Campaign timed_drives(const Contest& contest, const ContestChoice& choice);
 
-/// The plan for people: what is driven how often. As JSON one object: the contest's lists, the
-/// candidates, and the plans of the search and of the contest as `qsmpc campaign --dry-run --json`
-/// prints them.
+/// The plan as readable text: what is driven and how often. The JSON is one object: the contest's
+/// lists, the candidates, and the plans of the search and the contest as printed by `qsmpc campaign
+/// --dry-run --json`.
 [[nodiscard]] std::string contest_plan_text(const LoadedContest& loaded);
 [[nodiscard]] std::string contest_plan_json(const LoadedContest& loaded);
 

@@ -13,7 +13,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// What of `controller` belongs to the problem, not to who solves it.
+/// Keys of `controller` that belong to the problem, not to its solver.
 constexpr std::array kSharedKeys{"controller.horizon", "controller.input_bounds", "controller.cost",
                                  "controller.deadline", "controller.threads"};
 constexpr const char* kScenariosWords =

@@ -1,4 +1,4 @@
-// The keys of a contest file, and what their values may be.
+// The keys of a contest file and their admissible values.
 #pragma once
 
 #include <cstddef>
@@ -25,10 +25,10 @@ inline constexpr int kTimingSeeds = 3;
 /// The JSON Schema of a contest file.
 [[nodiscard]] nlohmann::ordered_json contest_schema();
 
-/// The table of its keys in the documentation.
+/// The documentation's table of its keys.
 [[nodiscard]] std::vector<DocumentTable> contest_tables();
 
-/// Why controllers of a contest may not differ in the scenario's `key`; empty where they may.
+/// Why the controllers of a contest may not differ in the scenario's `key`; empty if they may.
 [[nodiscard]] std::string why_shared(const std::string& key);
 
 }  // namespace qsmpc::harness

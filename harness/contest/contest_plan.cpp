@@ -21,7 +21,8 @@ namespace {
 
 constexpr const char* kCovarianceKey = "disturbance.covariance";
 
-/// The drives of a contest, one scenario at a time: what noise is depends on the scenario.
+/// Expands a contest one scenario at a time, since the noise factor scales the scenario's
+/// covariance.
 class ContestExpansion {
  public:
   ContestExpansion(const Contest& contest, const std::vector<Contender>& contenders,
@@ -62,12 +63,12 @@ class ContestExpansion {
   Problems& problems_;
   CampaignRefusals refusals_;
   VariantScenarios scenarios_;
-  std::vector<std::string> paths_;    // of the scenarios
-  std::vector<SettingGroup> groups_;  // of the last scenario
+  std::vector<std::string> paths_;    // scenario files
+  std::vector<SettingGroup> groups_;  // of the current scenario
   std::vector<CampaignVariant> variants_;
 };
 
-/// Everything but the noise.
+/// All settings of a contender except the noise.
 SettingGroup ContestExpansion::group_of(const Contender& contender, std::size_t level) const {
   const ContestController& controller = contest_.controllers[contender.controller];
   const ContestCandidate& candidate = controller.candidates[contender.candidate];
@@ -96,7 +97,8 @@ CampaignDraft ContestExpansion::draft_of(const std::vector<CampaignChoice>& scen
           .seeds = contest_.seeds};
 }
 
-/// Nothing where the noise is the scenario's, or cannot be scaled, which is refused.
+/// Returns nothing where the noise is the scenario's own, or where it cannot be scaled; the latter
+/// is refused.
 std::optional<CampaignSetting> ContestExpansion::noise_of(const CampaignChoice& scenario,
                                                           const Eigen::MatrixXd& covariance,
                                                           std::size_t level) {

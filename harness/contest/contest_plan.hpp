@@ -1,8 +1,8 @@
-// A contest's drives as campaigns: the search for settings, the contest itself, and the drives that
-// are timed.
+// A contest's drives as campaigns: the search for settings, the contest itself, and the timed
+// drives.
 //
-// The variants of each are by scenario, then contender (a controller with a candidate), then noise,
-// then plant.
+// The variants of each are ordered by scenario, then contender (a controller with a candidate),
+// then noise, then plant.
 #pragma once
 
 #include <cstddef>
@@ -23,27 +23,27 @@ struct Contender {
   friend bool operator==(const Contender&, const Contender&) = default;
 };
 
-/// What the search drives: all candidates of the controllers that have several. Empty where there
-/// is nothing to choose.
+/// The contenders of the search: all candidates of the controllers that have several. Empty if
+/// there is nothing to choose.
 [[nodiscard]] std::vector<Contender> searched_contenders(const Contest& contest);
 
-/// What the contest drives: each controller with the candidate that was chosen.
+/// The contenders of the contest: each controller with its chosen candidate.
 [[nodiscard]] std::vector<Contender> chosen_contenders(const ContestChoice& choice);
 
-/// The place of the variant in which contender number `contender` of `contenders` drives in `cell`.
+/// The index of the variant for contender `contender` of `contenders` in `cell`.
 [[nodiscard]] std::size_t variant_of(const Contest& contest, std::size_t contenders,
                                      std::size_t contender, const ContestCell& cell);
 
-/// Each of `contenders` in all cells with `seeds`. A contender is called by its controller, where
-/// `with_candidates` by its candidate as well, and by the noise where the contest has several or
-/// another than the scenario's. Everything wrong is noted in `problems`, as expand_campaign does;
-/// the campaign is valid only if nothing was.
+/// The campaign of all `contenders` in all cells with `seeds`. A contender is named after its
+/// controller, with `with_candidates` also after its candidate, and after the noise if the contest
+/// has several levels or one other than the scenario's. Problems are added to `problems`, as by
+/// expand_campaign; the campaign is valid only if there are none.
 [[nodiscard]] Campaign contest_campaign(const Contest& contest,
                                         const std::vector<Contender>& contenders,
                                         const SeedSet& seeds, bool with_candidates,
                                         Problems& problems);
 
-/// The first `count` seeds, or all where there are fewer.
+/// The first `count` seeds, or all if there are fewer.
 [[nodiscard]] SeedSet first_seeds(const SeedSet& seeds, std::int64_t count);
 
 }  // namespace qsmpc::harness

@@ -24,8 +24,9 @@ namespace {
 
 constexpr std::int64_t kMostGridPoints = 100'000;  // of a controller's search
 
-/// Which points of a grid of `points` are tried, ascending: all, or `budget` of them by chance. The
-/// chance is the controller's own, so that others in the contest change nothing.
+/// The points of a grid of `points` to try, ascending: all, or `budget` of them at random. The
+/// random numbers depend on the controller's name, so that other controllers of the contest have no
+/// effect.
 std::vector<std::size_t> tried_points(std::int64_t points, std::int64_t budget,
                                       const std::string& controller) {
   std::vector<std::size_t> order(static_cast<std::size_t>(points));
@@ -44,7 +45,7 @@ std::vector<std::size_t> tried_points(std::int64_t points, std::int64_t budget,
   return order;
 }
 
-/// Point `point` of the grid, of which the first axis varies slowest.
+/// Point `point` of the grid; the first axis varies slowest.
 ContestCandidate candidate_at(const std::vector<GridAxis>& axes, std::size_t point) {
   ContestCandidate candidate;
   std::size_t stride = 1;
@@ -112,7 +113,7 @@ void ContestReader::read_names() {
   contest_.description = root_.text("description", "", kLongestCampaignDescription);
 }
 
-/// What belongs to the problem is the same for all who solve it.
+/// Keys that define the problem must be the same for all controllers.
 void ContestReader::refuse_shared(const std::vector<CampaignSetting>& settings) {
   for (const CampaignSetting& setting : settings) {
     const std::string expected = why_shared(setting.key);
@@ -223,7 +224,7 @@ void ContestReader::read_tuning() {
   tuning.refuse_unread();
 }
 
-/// Settings that were chosen on seeds of the table would look better there than they are.
+/// Settings tuned on the contest's own seeds would look better in its results than they are.
 void ContestReader::refuse_shared_seeds(const YamlNode& node) {
   const SeedSet& tuning = contest_.tuning->seeds;
   const SeedSet& drives = contest_.seeds;
@@ -238,7 +239,7 @@ void ContestReader::refuse_shared_seeds(const YamlNode& node) {
     if (first < end) refuse(first);
     return;
   }
-  // One of them is a list, of at most kMostListedSeeds.
+  // At least one of them is a list, of at most kMostListedSeeds.
   const SeedSet& listed = tuning.listed.empty() ? drives : tuning;
   const SeedSet& other = tuning.listed.empty() ? tuning : drives;
   const std::unordered_set<std::uint64_t> others(other.listed.begin(), other.listed.end());
@@ -276,7 +277,7 @@ void ContestReader::read_search(const YamlNode& node, std::int64_t budget) {
       refuse_shared(axis.values);
       points *= static_cast<double>(axis.values.size());
     }
-    if (points < 1.0) continue;  // an axis whose values are all wrong
+    if (points < 1.0) continue;  // an axis without a valid value
     if (points > static_cast<double>(kMostGridPoints)) {
       problems_.add(node.items[i], path, fmt::format("{:.0f} combinations", points),
                     fmt::format("at most {}", kMostGridPoints));

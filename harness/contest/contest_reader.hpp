@@ -1,4 +1,4 @@
-// From a contest file's tree of keys to what it asks for, before scenarios are looked up.
+// Reads a contest file's key tree, before scenarios are looked up.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace qsmpc::harness {
 
-/// Reads `tree`. Everything wrong with it is noted in `problems`, and left out of what is returned.
-/// The name defaults to the stem of `file`. Candidates of a controller whose grid is larger than
-/// the budget are those that a fixed random order, of its name and grid alone, has first.
+/// Reads `tree`. Invalid parts are added to `problems` and left out of the result. The name
+/// defaults to the stem of `file`. If a controller's grid is larger than the budget, its candidates
+/// are the first ones of a fixed random order that depends only on the controller's name and grid.
 [[nodiscard]] Contest read_contest(const YamlNode& tree, const std::string& file,
                                    Problems& problems);
 

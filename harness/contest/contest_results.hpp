@@ -1,4 +1,4 @@
-// A contest's results as files and for a terminal.
+// A contest's results as files and terminal output.
 #pragma once
 
 #include <string>
@@ -7,16 +7,16 @@
 
 namespace qsmpc::harness {
 
-/// The text of contest.json: stable keys, one object, ending in a new line. Numbers that are not
-/// finite are null. Wall-clock values stand under the keys `ocp_ms` alone: everything else is the
-/// same in two runs, unless a deadline cut plans short.
+/// The text of contest.json: one object with stable keys, ending in a newline. Non-finite numbers
+/// are null. Only the `ocp_ms` keys hold wall-clock values: everything else is reproducible, unless
+/// a deadline cut plans short.
 [[nodiscard]] std::string contest_json(const ContestResults& results);
 
-/// contest.csv: a line for each cell and controller, and for each controller over all cells, where
-/// scenario, plant and noise are empty. Wall-clock values are in the last columns.
+/// The text of contest.csv: one line per cell and controller, and one per controller over all
+/// cells, with scenario, plant and noise empty. Wall-clock values are in the last columns.
 [[nodiscard]] std::string contest_csv(const ContestResults& results);
 
-/// The table over all cells and the words about each controller, in lines of at most 110 columns.
+/// The table over all cells and the summary of each controller, in lines of at most 110 columns.
 [[nodiscard]] std::string contest_table(const ContestResults& results);
 
 }  // namespace qsmpc::harness

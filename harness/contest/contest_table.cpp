@@ -19,7 +19,8 @@ std::string short_number(double value) {
   return std::isfinite(value) ? fmt::format("{:.2g}", value) : "-";
 }
 
-/// "-4 % [-6, -2]" of the cost against the reference's; "1" stands for the reference itself.
+/// "-4 % [-6, -2]": change of the cost relative to the reference; "reference" for the reference
+/// itself.
 std::string cost_cell(const Standing& standing) {
   if (!standing.versus) return "reference";
   const CostDifference& cost = standing.versus->cost;
@@ -35,7 +36,7 @@ std::string rate_cell(const EpisodeRate& rate) {
                      format_percent(rate.interval.upper));
 }
 
-/// `text` with spaces before it; each character takes one column.
+/// `text`, right-aligned; each character takes one column.
 std::string right(const std::string& text, std::size_t width) {
   const auto columns = static_cast<std::size_t>(std::ranges::count_if(
       text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));
@@ -56,7 +57,7 @@ std::string table_row(const std::string& name, const Standing& standing) {
   return row + right(times.periods == 0 ? "-" : format_short(times.ocp_ms.p99, 2), 7) + "\n";
 }
 
-/// `text` in lines, each after two spaces.
+/// `text`, wrapped and indented by two spaces.
 std::string indented(const std::string& text) {
   std::string lines;
   for (const std::string& line : wrapped(text, kLineWidth)) lines += "  " + line + "\n";

@@ -11,7 +11,7 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kNameLimit = 30;  // bytes of a controller's name in a sentence
-constexpr double kLeastTold = 0.001;    // of a p-value
+constexpr double kLeastTold = 0.001;    // the smallest p-value that is given as a number
 
 std::string percent(double share) { return format_percent(share) + " %"; }
 
@@ -21,7 +21,7 @@ std::string name_of_controller(const ContestResults& results, std::size_t contro
   return printable(results.contest.controllers[controller].name, kNameLimit);
 }
 
-/// "−8 % [−11, −5]" of a ratio of costs.
+/// "−8 % [−11, −5]": the change given by a ratio of costs.
 std::string cost_words(const CostDifference& cost) {
   const auto change = [](double ratio) { return format_short(100.0 * (ratio - 1.0), 2); };
   return fmt::format("{}{} % [{}, {}]", cost.ratio > 1.0 ? "+" : "", change(cost.ratio),
@@ -61,7 +61,7 @@ std::string economy_words(const Versus& versus) {
                      cost_words(cost));
 }
 
-/// What it took its risk for, against what happened.
+/// The risk that the controller estimated compared with the observed one.
 std::string belief_words(const Standing& standing) {
   if (standing.believed.drives == 0) return "no estimate of its risk";
   const double believed = standing.believed.mean;

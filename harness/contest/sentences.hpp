@@ -1,4 +1,4 @@
-// What a contest's numbers say, in words.
+// A contest's results in words.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,11 @@
 
 namespace qsmpc::harness {
 
-/// Who has the fewest unsafe drives, and who the lowest cost, in a line.
+/// One line: which controller has the fewest unsafe drives, and which the lowest cost.
 [[nodiscard]] std::string contest_headline(const ContestResults& results);
 
-/// What is to be said of a controller, without its name: of the reference what it did, of others
-/// where they are ahead of it, behind, or not to be told apart from it. Plain text.
+/// A summary of a controller, without its name, as plain text: of the reference what it did; of the
+/// others where they are ahead of it, behind it, or indistinguishable from it.
 [[nodiscard]] std::string words_about(const ContestResults& results, std::size_t controller);
 
 }  // namespace qsmpc::harness

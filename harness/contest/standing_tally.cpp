@@ -8,10 +8,10 @@
 namespace qsmpc::harness {
 namespace {
 
-// Of the sums over seeds of shares: a share of 1/3 is no number of a computer's.
+// Tolerance of sums of shares over seeds: shares such as 1/3 are not exact in floating point.
 constexpr double kShareRounding = 1e-9;
 
-/// What of a drive is counted, in the order of Standing's rates.
+/// The counted events of a drive, in the order of Standing's rates.
 enum Event : std::size_t { kReachedDrive, kCollided, kLeft, kTimedOut, kFaulted, kUnsafeDrive };
 
 bool reached(const EpisodeRow& row) { return !is_failure(row); }
@@ -50,10 +50,10 @@ void StandingTally::add(const EpisodeRow& row, const Eigen::ArrayXd& weights) {
   if (reached(row) && std::isfinite(row.cost)) cost_.add(row.cost, weights);
 }
 
-/// The limits of Clopper and Pearson for as many trials as there are seeds, in each of which the
-/// share of its drives is a part of an event, rounded outwards. They are exact where each seed has
-/// one drive, or its drives end alike; where these differ, the share varies less than an event
-/// does.
+/// Clopper–Pearson limits with one trial per seed. The share of a seed's drives with the event
+/// counts as a fraction of an event; the sum is rounded outwards. The limits are exact where each
+/// seed has one drive or all of its drives end alike; otherwise a share varies less than a single
+/// event does.
 EpisodeRate StandingTally::rate_of(std::size_t event) const {
   std::int64_t events = 0;
   std::int64_t drives = 0;
@@ -130,7 +130,7 @@ CostDifference VersusTally::cost() const {
   for (Eigen::Index r = 0; difference.pairs > 1 && r < kBootstrapReplicates; ++r) {
     RunningMean replicate;
     for (const auto& [cell, costs] : costs_) {
-      // Of few pairs, none may be in a replicate.
+      // With few pairs, a replicate may contain none of them.
       if (costs.references[r] > 0.0) replicate.add(costs.owns[r] / costs.references[r]);
     }
     if (replicate.count() > 0) replicates.push_back(replicate.mean());

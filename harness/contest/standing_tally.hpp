@@ -1,4 +1,4 @@
-// What is counted of a contest's drives while they stream by, of one cell or of several.
+// Streaming tallies of a contest's drives, in one cell or several.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@
 
 namespace qsmpc::harness {
 
-/// The drives of one controller.
+/// Tallies the drives of one controller.
 class StandingTally {
  public:
   /// weights: poisson_weights of the row's seed.
   void add(const EpisodeRow& row, const Eigen::ArrayXd& weights);
 
-  /// Without what the timed drives and the reference say.
+  /// All but what comes from the timed drives and the comparison with the reference.
   [[nodiscard]] Standing result() const;
 
  private:
@@ -39,10 +39,10 @@ class StandingTally {
   BootstrapMean cost_{};
 };
 
-/// The drives of a controller and of the reference with the same seed in the same cell.
+/// Compares the drives of a controller and of the reference with the same seed in the same cell.
 class VersusTally {
  public:
-  /// weights: poisson_weights of their seed; `cell`: any number of the cell, small.
+  /// weights: poisson_weights of their seed; cell: a number that identifies the cell.
   void add(const EpisodeRow& reference, const EpisodeRow& row, std::size_t cell,
            const Eigen::ArrayXd& weights);
 
@@ -51,11 +51,11 @@ class VersusTally {
  private:
   struct Share {
     BootstrapMean mean{};
-    std::map<std::uint64_t, std::int64_t> more{};  ///< drives, by seed
+    std::map<std::uint64_t, std::int64_t> more{};  ///< excess of drives, by seed
     void add(bool reference, bool own, std::uint64_t seed, const Eigen::ArrayXd& weights);
     [[nodiscard]] ShareDifference result() const;
   };
-  /// Sums of costs in each replicate, and in the sample itself.
+  /// Sums of costs in the sample and in each bootstrap replicate.
   struct CellCosts {
     double own = 0.0;
     double reference = 0.0;

@@ -17,7 +17,7 @@ MatchResult by_sign(const ShareDifference& difference, bool more_is_better) {
                                                                   : MatchResult::kLoss;
 }
 
-/// The times of the timed drives of some variants together.
+/// Pools the times of the timed drives of several variants.
 class TimesTally {
  public:
   void add(const StoreReader& store, std::int64_t variant) {
@@ -36,7 +36,7 @@ class TimesTally {
   std::vector<double> times_{};
 };
 
-/// All that is counted of a controller.
+/// All tallies of a controller.
 struct Tallies {
   StandingTally standing{};
   VersusTally versus{};
@@ -70,7 +70,7 @@ class Evaluation {
       for (const CellStandings& cell : results.cells) {
         if (standing.no_bound.empty()) standing.no_bound = cell.standings[n].no_bound;
       }
-      // Costs of different maps do not add up to anything.
+      // Costs on different maps are not comparable, so a mean over them is meaningless.
       if (results.cells.size() > 1) standing.cost = {.drives = standing.cost.drives};
     }
   }

@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// The mean of those that are finite; not a number of none.
+/// The mean of the finite values; NaN if there are none.
 double finite_mean(const std::vector<double>& values) {
   RunningMean mean;
   for (const double value : values) {
@@ -20,12 +20,12 @@ double finite_mean(const std::vector<double>& values) {
   return mean.mean();
 }
 
-/// The candidates of one controller, which are contenders `first` … of `contenders`.
+/// The results of one controller's `count` candidates: contenders `first` … of `contenders`.
 std::vector<TriedCandidate> tried_of(const Contest& contest, const StoreReader& search,
                                      const std::vector<Contender>& contenders, std::size_t first,
                                      std::size_t count) {
   std::vector<TriedCandidate> tried(count);
-  std::vector<std::vector<double>> relative(count);  // by candidate, a number a cell
+  std::vector<std::vector<double>> relative(count);  // by candidate, one number per cell
   for (const ContestCell& cell : contest.cells()) {
     std::vector<double> costs(count);
     for (std::size_t n = 0; n < count; ++n) {
@@ -45,7 +45,7 @@ std::vector<TriedCandidate> tried_of(const Contest& contest, const StoreReader& 
     }
     const double unit = finite_mean(costs);
     for (std::size_t n = 0; n < count; ++n) {
-      // Where all cost nothing, none costs more than another.
+      // If all costs are 0, all candidates are equal.
       relative[n].push_back(unit == 0.0 ? 1.0 : costs[n] / unit);
     }
   }

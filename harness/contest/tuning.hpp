@@ -1,5 +1,5 @@
-// Which of its candidates each controller drives with: the same criterion for all, on drives of
-// seeds that the contest does not have.
+// Chooses the candidate of each controller by the same criterion for all, on drives with seeds that
+// the contest does not use.
 #pragma once
 
 #include <cstddef>
@@ -12,36 +12,37 @@
 
 namespace qsmpc::harness {
 
-/// What became of a candidate's drives.
+/// The results of a candidate's drives.
 struct TriedCandidate {
   std::size_t candidate = 0;
   std::int64_t drives = 0;
-  std::int64_t failures = 0;  ///< that were unsafe, or did not reach the target
-  /// The mean cost of the drives that reached the target, in units of the mean over all candidates
-  /// of the controller, each cell alone, then the mean over the cells; not a number where none did.
+  std::int64_t failures = 0;  ///< drives that were unsafe or did not reach the target
+  /// The mean cost of the drives that reached the target, in each cell divided by the mean over all
+  /// candidates of the controller, then averaged over the cells; NaN if no drive reached the
+  /// target.
   double relative_cost = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Of all controllers, by controller: what was tried, none where there was nothing to choose.
+/// By controller: the candidates tried (none if there was nothing to choose), and the choice.
 struct TuningResult {
   std::vector<std::vector<TriedCandidate>> tried{};
   ContestChoice choice{};
 };
 
-/// What the criterion is, in words.
+/// The criterion in words.
 inline constexpr const char* kTuningCriterion =
     "fewest drives that were unsafe or did not reach the target, then the lowest mean cost of "
     "those "
     "that did, each scenario, plant and noise in units of the mean over the controller's "
     "candidates";
 
-/// The best of `tried`, at least one: by the criterion, of equal ones the first.
+/// The best of `tried` by the criterion, the first of equal ones. `tried` has at least one.
 [[nodiscard]] std::size_t best_candidate(const std::vector<TriedCandidate>& tried);
 
-/// What nothing was tried for: the first candidate of each.
+/// The result without a search: the first candidate of each controller.
 [[nodiscard]] TuningResult untuned(const Contest& contest);
 
-/// From the store of the search's drives, all of which are done. Throws what the store throws.
+/// The result of the search whose drives, all done, are in `search`. Throws what the store throws.
 [[nodiscard]] TuningResult tuned(const Contest& contest, const StoreReader& search);
 
 }  // namespace qsmpc::harness

@@ -1,5 +1,5 @@
-// The decision that the answer of a controller becomes: the plan's nominal path, what the policy
-// does at what is observed, and the cost along the path.
+// Turns a controller's answer into a decision: the plan's nominal path, the policy evaluated at the
+// observation, and the cost along the path.
 #pragma once
 
 #include <optional>
@@ -15,21 +15,21 @@
 
 namespace qsmpc::harness {
 
-/// What decisions of a controller have that is not part of the program.
+/// The parts that the decisions of a controller outside the program have.
 [[nodiscard]] controller::DecisionParts outside_parts(const Scenario::Controller& controller);
 
 class AnsweredDecision {
  public:
-  /// `dynamics` must outlive it.
+  /// `dynamics` must outlive this object.
   AnsweredDecision(const Scenario& scenario, const models::Dynamics& dynamics);
 
-  /// What answers must be; refers to this object.
+  /// The required form of answers; refers to this object.
   [[nodiscard]] AnswerShape shape() const {
     return {.system = dynamics_.description(), .bounds = bounds_, .stages = stages_};
   }
 
-  /// The decision for `answer`, which is of this shape, in `situation`; `optimise_ms` is how long
-  /// the answer took. Valid until the next call.
+  /// The decision for `answer`, which has this shape, in `situation`; `optimise_ms` is the duration
+  /// of the answer. Valid until the next call.
   const controller::Decision& take(const ControllerAnswer& answer,
                                    const controller::Situation& situation, double optimise_ms);
 
@@ -38,9 +38,9 @@ class AnsweredDecision {
   controller::InputBounds bounds_;
   int stages_;
   controller::QuadraticCost cost_;
-  std::optional<controller::Waypoints> route_;  // which the cost's target goes along
+  std::optional<controller::Waypoints> route_;  // along which the cost's target moves
   controller::PathCostScratch cost_scratch_;
-  controller::QuadraticCost nearest_;  // about what means the target, nearest to the belief
+  controller::QuadraticCost nearest_;  // about the target's equivalent nearest to the belief
   Eigen::VectorXd offset_;
   controller::Policy policy_;
   controller::Decision decision_;

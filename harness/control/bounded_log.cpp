@@ -10,7 +10,7 @@ void BoundedLog::add(std::string_view text) {
   const std::size_t first = std::min(text.size(), half_ - begin_.size());
   begin_ += text.substr(0, first);
   end_ += text.substr(first);
-  // Cut rarely, so that long logs are not moved with every line.
+  // Trimmed rarely, so that a long log is not moved for every line.
   if (end_.size() <= 2 * half_) return;
   const std::size_t cut = end_.size() - half_;
   end_.erase(0, cut);

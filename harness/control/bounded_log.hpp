@@ -1,4 +1,4 @@
-// What a process wrote, of which beginning and end are kept where it is much.
+// The output of a process; only the beginning and the end of a long one are kept.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class BoundedLog {
   void add(std::string_view text);
   void clear();
 
-  /// With a line that says how many bytes are left out, where there are any.
+  /// The text; if bytes were left out, with a line that states how many.
   [[nodiscard]] std::string text() const;
   /// The last line that is not blank; empty without one.
   [[nodiscard]] std::string last_line() const;

@@ -28,13 +28,13 @@ using Clock = ChildProcess::Clock;
 constexpr std::size_t kLongestLine = std::size_t{16} << 20U;  // bytes
 constexpr std::size_t kLogHalf = std::size_t{128} << 10U;     // bytes
 constexpr std::size_t kChunk = std::size_t{64} << 10U;        // bytes
-// How long signals to stop may go unheard.
+// Longest delay in noticing a stop signal.
 constexpr std::chrono::milliseconds kSlice{50};
-// How long a process may take to end by itself once it is told to.
+// Time for a process to end by itself once asked.
 constexpr std::chrono::milliseconds kGrace{1000};
-// How long the words of a process that has gone may be on their way.
+// Time for the remaining output of an ended process to arrive.
 constexpr std::chrono::milliseconds kLastWords{200};
-// When the host, which kills what does not go, must have ended.
+// Time for the host to end, including the processes that it has to kill.
 constexpr std::chrono::milliseconds kHostGrace{6000};
 constexpr int kLeash = 3;
 
@@ -43,7 +43,8 @@ constexpr int kLeash = 3;
       fmt::format("a controller's process cannot be started: {}: {}", what, std::strerror(errno)));
 }
 
-/// Two ends that no other process inherits: of the host, and ours, which never waits.
+/// Both ends of a channel, inherited by no other process: the host's, and ours, which is
+/// non-blocking.
 struct Ends {
   Descriptor theirs;
   Descriptor ours;
@@ -73,7 +74,7 @@ Ends leash() {
   return ends_of(Descriptor(ends[0]), Descriptor(ends[1]));
 }
 
-/// Keeps SIGPIPE from the thread while it lives: a reader that went away is an error of the write.
+/// Blocks SIGPIPE in the thread during its lifetime: a vanished reader then makes the write fail.
 class NoSigpipe {
  public:
   NoSigpipe() {
@@ -94,7 +95,7 @@ class NoSigpipe {
   sigset_t before_{};
 };
 
-/// Reads what is there into `take`; closes at the end.
+/// Passes the available data to `take`; closes the descriptor at the end of the stream.
 template <class Take>
 void read_some(Descriptor& from, const Take& take) {
   std::array<char, kChunk> chunk;  // NOLINT(cppcoreguidelines-pro-type-member-init)
@@ -238,7 +239,7 @@ void ChildProcess::read_output() {
 void ChildProcess::read_errors() {
   read_some(errors_, [this](std::string_view text) {
     log_.add(text);
-    return false;  // one that never stops shall not keep us
+    return false;  // an endless writer must not hold us up
   });
 }
 
@@ -251,7 +252,7 @@ void ChildProcess::read_leash() {
     return;
   }
   end_ = end;
-  // What it said before is on its way no longer.
+  // All output that it wrote before it ended is available by now.
   if (output_.is_open()) read_output();
 }
 
@@ -269,7 +270,7 @@ void ChildProcess::finish(const std::string& line) noexcept {
     const auto until = Clock::now() + kGrace;
     while (!end_ && leash_.is_open() && Clock::now() < until) turn(until);
     read_last_words();
-  } catch (...) {  // no memory for its last words: it is ended all the same
+  } catch (...) {  // out of memory for the last output: the process is ended all the same
     log_.clear();
   }
 }
@@ -286,7 +287,7 @@ void ChildProcess::end_host() noexcept {
     std::this_thread::sleep_for(pause);
     pause = std::min<std::chrono::microseconds>(2 * pause, std::chrono::milliseconds(5));
   }
-  ::kill(host_, SIGKILL);  // its controller goes with it
+  ::kill(host_, SIGKILL);  // the kernel then kills its controller too
   while (::waitpid(host_, nullptr, 0) < 0 && errno == EINTR) {
   }
 }

@@ -1,12 +1,12 @@
-// A process that is told lines and answers lines, and ends with all of its children when its owner
-// wants it or ends itself.
+// A process that exchanges lines with its owner; it and all of its children are ended on request or
+// when the owner ends.
 //
 //   ChildProcess child({"folder", "run", "python3", "my.py"});
 //   child.send("{}", deadline);
 //   child.receive(deadline);   // "…"
 //
-// It runs under qsmpc-host (host/main.cpp). No call waits longer than it is told to, but for
-// signals to stop (check_interrupts), which end it earlier.
+// It runs under qsmpc-host (host/main.cpp). No call blocks beyond its deadline; stop signals
+// (check_interrupts) end it earlier.
 #pragma once
 
 #include <chrono>
@@ -25,7 +25,7 @@
 
 namespace qsmpc::harness {
 
-/// The process is not there any more, or says too much. `what()` in the words of an error's found.
+/// The process has ended, or its output is too long. `what()` is worded as an error's "found".
 class ChildFailure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -35,60 +35,60 @@ class ChildProcess {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Starts the host with these arguments. Throws IoError where it cannot be started.
+  /// Starts the host with these arguments. Throws IoError where that fails.
   explicit ChildProcess(const std::vector<std::string>& host_arguments);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
   ChildProcess(ChildProcess&&) = delete;
   ChildProcess& operator=(ChildProcess&&) = delete;
-  /// Ends it and its children: asks them to, and kills what has not gone after a second.
+  /// Ends the process and its children: asks them to end, and kills those left after a second.
   ~ChildProcess();
 
-  /// Writes `line` and a new line. Returns whether it was read so far by `deadline` that all of it
-  /// could be written. Throws ChildFailure, and Interrupted.
+  /// Writes `line` and a line feed. Returns whether all of it could be written by `deadline`, i.e.
+  /// whether the process reads fast enough. Throws ChildFailure, and Interrupted.
   [[nodiscard]] bool send(const std::string& line, Clock::time_point deadline);
 
-  /// The next line, without its end; nothing if there is none by `deadline`. Throws ChildFailure,
-  /// and Interrupted.
+  /// The next line, without its line feed; nothing if there is none by `deadline`. Throws
+  /// ChildFailure, and Interrupted.
   [[nodiscard]] std::optional<std::string> receive(Clock::time_point deadline);
 
-  /// What it has said by now that nobody has received; nothing where that is nothing.
+  /// Output so far that has not been received; nothing if there is none.
   [[nodiscard]] std::optional<std::string> unasked();
 
-  /// Reads what of its standard error has come by now.
+  /// Reads the standard error that is available.
   void listen() { turn(Clock::time_point::min()); }
 
-  /// Whether it still can answer, as far as is known by now.
+  /// Whether the process can still answer, as far as is known.
   [[nodiscard]] bool is_alive() const { return !end_ && output_.is_open() && leash_.is_open(); }
 
-  /// Sends `line`, closes its standard input and gives it a second to end by itself.
+  /// Sends `line`, closes the process's standard input and gives it a second to end by itself.
   void finish(const std::string& line) noexcept;
 
-  /// Its standard error so far, which the caller may clear.
+  /// The process's standard error so far, which the caller may clear.
   [[nodiscard]] BoundedLog& log() { return log_; }
-  /// Waits a little for the last words of a process that has ended.
+  /// Waits briefly for the remaining output of a process that has ended.
   void read_last_words();
 
  private:
-  /// Moves what can be moved, waiting for it until `until` at most.
+  /// Transfers pending data in both directions, waiting for it until `until` at most.
   void turn(Clock::time_point until);
   void write_some();
   void read_output();
   void read_errors();
   void read_leash();
   [[nodiscard]] std::optional<std::string> take_line();
-  /// Throws ChildFailure where nothing more can come.
+  /// Throws ChildFailure where no more output can come.
   void check_alive() const;
   void end_host() noexcept;
 
   pid_t host_ = -1;
-  Descriptor input_;   // of the process, to be written
-  Descriptor output_;  // of the process, to be read; closed at its end, as the next ones
+  Descriptor input_;   // the process's standard input
+  Descriptor output_;  // the process's standard output; closed at its end, like those below
   Descriptor errors_;
   Descriptor leash_;
   std::string to_write_;
   std::string received_;
-  std::size_t searched_ = 0;  // bytes of it that have no new line
+  std::size_t searched_ = 0;  // bytes of it known to contain no line feed
   std::optional<ChildEnd> end_;
   BoundedLog log_;
 };

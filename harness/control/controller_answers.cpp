@@ -1,4 +1,4 @@
-// The controller's side of controller_protocol.hpp, read as what anybody may have written.
+// The controller's side of controller_protocol.hpp, parsed as untrusted input.
 #include <array>
 #include <cmath>
 #include <optional>
@@ -15,7 +15,7 @@ namespace {
 
 using AnswerJson = nlohmann::json;
 
-constexpr std::size_t kShown = 80;  // bytes of what was answered
+constexpr std::size_t kShown = 80;  // bytes of the answer shown in messages
 
 std::string shown(const AnswerJson& json) {
   return printable(json.dump(-1, ' ', false, AnswerJson::error_handler_t::replace), kShown);
@@ -25,7 +25,7 @@ std::string shown(const AnswerJson& json) {
   throw WrongAnswer{std::move(found), std::move(expected)};
 }
 
-/// The object in `line`. What the controller itself calls an error is one.
+/// The object in `line`. An error that the controller reports is thrown as one.
 AnswerJson object_in(const std::string& line, const std::string& expected) {
   AnswerJson json = AnswerJson::parse(line, nullptr, /*allow_exceptions=*/false);
   if (json.is_discarded())
@@ -38,7 +38,7 @@ AnswerJson object_in(const std::string& line, const std::string& expected) {
   return json;
 }
 
-/// `count` finite numbers, which messages call `what`.
+/// `count` finite numbers, called `what` in messages.
 Eigen::VectorXd numbers(const AnswerJson& list, Eigen::Index count, const std::string& what) {
   const std::string expected = fmt::format("{} finite numbers", count);
   if (!list.is_array() || std::ssize(list) != count) {
@@ -96,7 +96,7 @@ int count_in(const AnswerJson& count) {
   return count.get<int>();
 }
 
-/// What the controller says of the risk that it takes, if it does.
+/// The controller's own risk estimate, if it gives one.
 std::optional<double> believed_in(const AnswerJson& json) {
   const auto believed = json.find("believed");
   if (believed == json.end() || believed->is_null()) return std::nullopt;

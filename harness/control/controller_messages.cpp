@@ -59,7 +59,7 @@ Json box_json(const controller::Box& box) {
   return {{"lower", list_of(box.lower)}, {"upper", list_of(box.upper)}};
 }
 
-/// A shape under its name and with the keys that it has in a scenario.
+/// A shape under its name, with the same keys as in a scenario.
 struct ShapeJson {
   Json operator()(const controller::DiscShape& disc) const {
     return {{"disc", {{"centre", list_of(disc.centre)}, {"radius", disc.radius}}}};
@@ -95,7 +95,7 @@ Json safe_set_json(const controller::SafeSet& safe_set) {
   return json;
 }
 
-/// By obstacle that moves, stage and way.
+/// Indexed by moving obstacle, stage and way.
 Json forecast_json(const controller::ObstacleForecast& forecast) {
   Json obstacles = Json::array();
   for (std::size_t n = 0; n < forecast.size(); ++n) {

@@ -1,5 +1,5 @@
-// A controller that is an object, or a function, of the program that drives: in C++, or in Python
-// by the module.
+// A controller that is an object or a function of the calling program: in C++, or in Python through
+// the module.
 //
 //   const Trace trace = run_episode(scenario, {.seed = 1}, {.act = [&](const Situation& now) {
 //     return ControllerAnswer{.input = gain * now.observation};
@@ -18,21 +18,21 @@
 
 namespace qsmpc::harness {
 
-/// What such a controller does. What a function throws ends the drive as a fault of the controller,
-/// Interrupted excepted.
+/// The functions of such a controller. An exception from one of them ends the drive as a fault of
+/// the controller, except Interrupted.
 struct ControllerObject {
-  std::string name = "object";  ///< what messages, traces and pages call it
-  /// Whether every answer has a plan of the scenario's horizon, which is then certified.
+  std::string name = "object";  ///< its name in messages, traces and pages
+  /// Whether every answer contains a plan over the scenario's horizon, which is then certified.
   bool plans = false;
   /// Called before the first period of each drive, with its seed; may be empty.
   std::function<void(std::uint64_t)> reset{};
   /// Called once per period.
   std::function<ControllerAnswer(const controller::Situation&)> act{};
-  /// What it has to say to people about the drive so far; may be empty.
+  /// Messages for the user about the drive so far; may be empty.
   std::function<std::string()> log{};
 };
 
-/// `scenario` with the controller that `object` is, as traces of its drives record it.
+/// `scenario` with `object` as its controller, as recorded in the traces of its drives.
 [[nodiscard]] Scenario with_controller(Scenario scenario, const ControllerObject& object);
 
 }  // namespace qsmpc::harness

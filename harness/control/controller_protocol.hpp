@@ -1,5 +1,5 @@
-// What is said between the program and a controller outside of it: lines of JSON.
-// docs/controllers.md is the reference.
+// The messages between the program and a controller outside it: lines of JSON. docs/controllers.md
+// is the reference.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,23 @@
 
 namespace qsmpc::harness {
 
-/// Grows with every change that an older controller would misread.
+/// Incremented with every change that an older controller would misread.
 inline constexpr int kProtocolVersion = 1;
 
-// Types of messages.
+// Message types.
 inline constexpr const char* kScenarioMessage = "scenario";
 inline constexpr const char* kResetMessage = "reset";
 inline constexpr const char* kSituationMessage = "situation";
 inline constexpr const char* kEndMessage = "end";
 
-/// The first message. Limits and bounds that there are not are null.
+/// The first message. Absent limits and bounds are null.
 [[nodiscard]] std::string scenario_message(const Scenario& scenario,
                                            const models::SystemDescription& system);
 
-/// Before the first period of each drive.
+/// Sent before the first period of each drive.
 [[nodiscard]] std::string reset_message(std::uint64_t seed);
 
-/// One a period. deadline: s from now.
+/// Sent once per period. deadline: s from now.
 [[nodiscard]] std::string situation_message(const controller::Situation& situation,
                                             double deadline);
 

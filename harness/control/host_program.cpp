@@ -27,7 +27,7 @@ std::string host_program() {
     if (is_program(given)) return given;
     throw IoError(std::string(given) + ": no program, but QSMPC_HOST names it");
   }
-  // Beside the program in a build folder, else where both are installed.
+  // Beside the program in a build folder, or where both are installed.
   std::vector<fs::path> places{fs::path(own_object_file()).parent_path() / kName};
   for (const std::string& prefix : installation_prefixes()) {
     places.push_back(fs::path(prefix) / "libexec" / "qsmpc" / kName);

@@ -1,13 +1,13 @@
-// Where the program is that starts, watches and ends controllers outside of qsmpc.
+// The location of the program that starts, watches and ends controllers outside qsmpc.
 #pragma once
 
 #include <string>
 
 namespace qsmpc::harness {
 
-/// The path of qsmpc-host: the environment variable QSMPC_HOST where it is set, else beside the
-/// running program, else ../libexec/qsmpc from there, else the build folder's. Throws IoError where
-/// it is nowhere.
+/// The path of qsmpc-host: the environment variable QSMPC_HOST if set, else beside the running
+/// program, else ../libexec/qsmpc relative to it, else in the build folder. Throws IoError if it is
+/// in none of these places.
 [[nodiscard]] std::string host_program();
 
 }  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kShownError = 200;  // bytes of what a function threw
+constexpr std::size_t kShownError = 200;  // bytes of an exception's message
 constexpr double kMilliseconds = 1000.0;  // in a second
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Asks a ControllerObject, and takes its answers for what anybody may have written.
+// Queries a ControllerObject and validates its answers as untrusted input.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ namespace qsmpc::harness {
 
 class ObjectController final : public controller::Controller {
  public:
-  /// `scenario` is one of with_controller. `dynamics` must outlive it. Throws
-  /// std::invalid_argument where `object` cannot act.
+  /// `scenario` must come from with_controller. `dynamics` must outlive this object. Throws
+  /// std::invalid_argument where `object` has no `act`.
   ObjectController(ControllerObject object, const Scenario& scenario,
                    const models::Dynamics& dynamics);
 
-  /// Throws ControllerError on an answer that is late or wrong, and where there is none.
+  /// Throws ControllerError on a late or invalid answer, and where `act` throws.
   const controller::Decision& decide(const controller::Situation& situation) override;
 
   using Controller::reset;
@@ -33,7 +33,7 @@ class ObjectController final : public controller::Controller {
   void guarded(const std::string& place, const Work& work);
 
   ControllerObject object_;
-  double patience_;  // s, for an answer
+  double patience_;  // s, time limit of an answer
   Eigen::Index state_dim_;
   AnsweredDecision decision_;
 };

@@ -47,7 +47,7 @@ void OutsideController::reset(std::uint64_t seed) {
   is_reset_ = false;
   log_.clear();
   if (process_ != nullptr) {
-    // What it did after its last answer was no part of this drive.
+    // Output, or an end, after the last answer of a drive does not belong to the next one.
     if (process_->unasked() || !process_->is_alive()) process_.reset();
   }
   if (process_ != nullptr) process_->log().clear();

@@ -1,8 +1,8 @@
-// A controller that is no part of the program: a process of the user's, or one that holds a shared
-// library of the user's, asked over lines of JSON.
+// A controller outside the program: a process of the user's, or one that hosts a shared library of
+// the user's, queried in lines of JSON.
 //
-// It is started for the first drive and kept for the next ones. What fails ends it, and a new one
-// is started for the next drive.
+// It is started for the first drive and kept for later ones. Any failure ends it, and a new one is
+// started for the next drive.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +20,15 @@ namespace qsmpc::harness {
 
 class OutsideController final : public controller::Controller {
  public:
-  /// Starts nothing yet. `dynamics` must outlive it.
+  /// Does not start the process yet. `dynamics` must outlive this object.
   OutsideController(const Scenario& scenario, const models::Dynamics& dynamics);
   ~OutsideController() override;
 
-  /// Throws ControllerError where there is no answer by the deadline, or a wrong one; IoError where
-  /// no process can be had; Interrupted. The process has ended then.
+  /// Throws ControllerError on a missing answer at the deadline and on an invalid one, IoError
+  /// where no process can be started, and Interrupted. In each case the process has ended.
   const controller::Decision& decide(const controller::Situation& situation) override;
 
-  /// Starts the process where none is there. Throws as `decide`.
+  /// Starts the process if there is none. Throws as `decide`.
   using Controller::reset;
   void reset(std::uint64_t seed) override;
 
@@ -42,7 +42,7 @@ class OutsideController final : public controller::Controller {
   [[nodiscard]] std::string answer_to(const std::string& message, double patience,
                                       const char* deadline_key);
   void tell(const std::string& message, double patience, const char* deadline_key);
-  /// Does `work`; ends the process where that throws. place: "period 3".
+  /// Does `work`; ends the process if that throws. place: "period 3".
   template <class Work>
   void guarded(const std::string& place, const Work& work);
   [[noreturn]] void fail(const std::string& place, const std::string& found,
@@ -54,7 +54,7 @@ class OutsideController final : public controller::Controller {
   const std::string scenario_message_;
   std::unique_ptr<ChildProcess> process_;
   std::uint64_t seed_ = 0;
-  bool is_reset_ = false;  // whether the process knows of the drive
+  bool is_reset_ = false;  // whether the process has been told of the drive
   std::string log_;        // of a process that has ended
   AnsweredDecision decision_;
 };

@@ -15,10 +15,10 @@
 namespace qsmpc::harness {
 namespace {
 
-// Above those of the process, so that none is overwritten while these are put in place.
+// Above the process's descriptors, so that no source is overwritten while they are set up.
 constexpr int kLeastSource = 10;
 
-/// posix_spawn's own objects, freed with it.
+/// RAII for posix_spawn's attribute and action objects.
 class SpawnSettings {
  public:
   SpawnSettings() {
@@ -56,7 +56,7 @@ pid_t spawn_process(const std::vector<std::string>& words,
                     const std::vector<SpawnDescriptor>& descriptors) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
-  // posix_spawn does not write to them.
+  // The const_cast is safe: posix_spawn does not write to the arguments.
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
 

@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// Ratios: wrong where it matters, and in any case.
+// Limits of the ratio: wrong where the discrepancy matters, and always wrong.
 constexpr double kSmall = 0.75;
 constexpr double kLarge = 1.0 / 0.75;
 constexpr double kTooSmall = 0.5;
@@ -78,7 +78,7 @@ std::string warning(AnswerVerdict verdict, const Scenario& scenario, const Plant
                      number(planned_deviation(scenario, state), coordinate));
 }
 
-/// That the vehicle has tipped over, which explains whatever else is wrong.
+/// A warning that the vehicle has tipped over, which explains all other problems.
 std::optional<std::string> tipping_warning(const PlantAnswers& answers) {
   const auto degrees = [](double angle) { return std::round(angle * 180.0 / std::numbers::pi); };
   if (answers.tilt_at_start > kTipped) {

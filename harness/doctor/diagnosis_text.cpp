@@ -24,7 +24,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of the largest change of a state
+constexpr double kRounding = 1e-6;  // of a state's largest change
 
 std::string with_unit(double value, const models::Coordinate& coordinate) {
   return format_short(value) + (coordinate.unit.empty() ? "" : " " + coordinate.unit);
@@ -52,7 +52,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-/// A change of a state; what is rounding beside `scale` is 0.
+/// A change of a state; 0 where it is only rounding relative to `scale`.
 std::string change(double value, double scale, const models::Coordinate& coordinate) {
   return with_unit(std::abs(value) < kRounding * scale ? 0.0 : value, coordinate);
 }
@@ -63,7 +63,7 @@ std::string held(const InputAnswer& answer, const models::SystemDescription& sys
   return fmt::format("{} ±{}", input.name, with_unit(answer.amplitude, input));
 }
 
-/// A number with four digits, as one would write it.
+/// A number with four significant digits, in its usual notation.
 std::string four_digits(double value) {
   return yaml_number(std::stod(fmt::format("{:.4g}", value)));
 }
@@ -73,7 +73,7 @@ std::string term_text(const std::string& actuator, const std::string& more, doub
                      four_digits(gain));
 }
 
-/// The keys with the gains that were found, to be put under `plant`.
+/// The keys with the gains that were found, to be pasted under `plant`.
 std::string mapping_lines(const PlantMapping& mapping) {
   std::string text;
   for (const auto& [name, terms] : mapping.inputs) {

@@ -1,4 +1,4 @@
-// A plant's answers as a table, and as JSON.
+// A plant's responses as a table, and as JSON.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@
 
 namespace qsmpc::harness {
 
-/// What `qsmpc doctor` has found.
+/// The findings of `qsmpc doctor`.
 struct Diagnosis {
   const Scenario& scenario;
   PlantAnswers answers;
-  std::optional<GainSearch> search{};  ///< where gains were sought
+  std::optional<GainSearch> search{};  ///< if gains were searched for
 };
 
-/// Lines for a terminal: every state's answer to every input, what is wrong, and gains to try.
+/// Lines for a terminal: every state's response to every input, the problems, and suggested gains.
 [[nodiscard]] std::string diagnosis_table(const Diagnosis& diagnosis);
 
 [[nodiscard]] std::string diagnosis_json(const Diagnosis& diagnosis);

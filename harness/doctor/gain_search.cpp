@@ -12,10 +12,10 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr int kRounds = 5;
-constexpr double kCloseEnough = 0.02;  // of a ratio to 1
-constexpr double kNoRatio = 0.01;      // below, the factor would be a guess
+constexpr double kCloseEnough = 0.02;  // of a ratio from 1
+constexpr double kNoRatio = 0.01;      // below this, the factor would be a guess
 
-/// The state that an input acts on first, relative to its scale; -1 for none.
+/// The state that an input acts on first, relative to the states' scales; -1 for none.
 int first_state(const InputAnswer& answer, const PlantAnswers& all) {
   int first = -1;
   double largest = 0.0;
@@ -30,7 +30,7 @@ int first_state(const InputAnswer& answer, const PlantAnswers& all) {
   return first;
 }
 
-/// What the gains that bring `answer` are to be multiplied by; 1 where that is not known.
+/// The factor for the gains that cause `answer`; 1 where it is not known.
 double factor_of(const InputAnswer& answer, const PlantAnswers& all) {
   const int state = first_state(answer, all);
   if (state < 0) return 1.0;
@@ -39,8 +39,8 @@ double factor_of(const InputAnswer& answer, const PlantAnswers& all) {
   return 1.0 / ratio;
 }
 
-/// Multiplies the goals of the feedback loops that follow `input`, or, empty, a constant. Whether
-/// there are any.
+/// Scales the goals of the feedback loops that follow `input` or, if it is empty, a constant goal.
+/// Returns whether there are any.
 bool scale_goals(PlantMapping& mapping, const std::string& input, double factor) {
   bool any = false;
   for (PlantLoop& loop : mapping.loops) {
@@ -52,7 +52,7 @@ bool scale_goals(PlantMapping& mapping, const std::string& input, double factor)
   return any;
 }
 
-/// Leaves the responses of feedback loops to be measured. Whether one was given.
+/// Clears the responses of feedback loops, so that they are measured. Returns whether any was set.
 bool forget_responses(PlantMapping& mapping) {
   bool any = false;
   for (PlantLoop& loop : mapping.loops) {
@@ -64,7 +64,7 @@ bool forget_responses(PlantMapping& mapping) {
   return any;
 }
 
-/// Whether it changed anything.
+/// Returns whether it changed anything.
 bool scale_gains(PlantMapping& mapping, const PlantAnswers& answers,
                  const models::SystemDescription& system) {
   bool changed = false;

@@ -18,12 +18,12 @@ namespace {
 constexpr int kLeastPeriods = 8;
 constexpr int kMostPeriods = 40;
 constexpr double kLeastDuration = 0.5;    // s
-constexpr double kAmplitude = 0.1;        // of the half-range: where vehicles are nearly linear
+constexpr double kAmplitude = 0.1;        // of the half-range; small enough to be nearly linear
 constexpr double kUnboundedRange = 10.0;  // half-range of an input without bounds, in its unit
 constexpr double kAnswered = 0.01;        // of a state's scale
-constexpr int kDelaySteps = 20;           // by period
+constexpr int kDelaySteps = 20;           // per period
 
-/// The states after 1, 2, … periods, state_dim x periods, less those at the start.
+/// The change of the states after 1, 2, … periods, state_dim x periods.
 using Path = Eigen::MatrixXd;
 
 struct Paths {
@@ -33,7 +33,7 @@ struct Paths {
   double tilt = 0.0;           // rad, at the end
 };
 
-/// What both do from the same state under inputs that are held.
+/// Drives plant and model from the same state under held inputs.
 class Comparer {
  public:
   explicit Comparer(const Scenario& scenario)
@@ -52,13 +52,13 @@ class Comparer {
     return Eigen::VectorXd::Zero(lower_.size()).cwiseMax(lower_).cwiseMin(upper_);
   }
 
-  /// How far an input is moved to either side.
+  /// The displacement of an input to either side.
   [[nodiscard]] double amplitude(Eigen::Index input) const {
     const double half_range = 0.5 * (upper_[input] - lower_[input]);
     return kAmplitude * (std::isfinite(half_range) ? half_range : kUnboundedRange);
   }
 
-  /// The neutral input with one of them moved; at a bound, from there inwards.
+  /// The neutral input with one component displaced; inwards where it is at a bound.
   [[nodiscard]] Eigen::VectorXd moved(Eigen::Index input, double by) const {
     Eigen::VectorXd held = neutral();
     const double reach = std::abs(by);
@@ -75,7 +75,7 @@ class Comparer {
                 .tilt_at_start = 0.0,
                 .tilt = 0.0};
     plant_->reset(start_);
-    const Eigen::VectorXd start = plant_->state();  // sensors are not set
+    const Eigen::VectorXd start = plant_->state();  // sensor states cannot be set
     paths.tilt_at_start = plant_->tilt();
     models::StateBatch state = start;
     models::StateBatch next = state;
@@ -113,10 +113,10 @@ class Comparer {
   int periods_;
 };
 
-/// `answer` as it is `delay` periods later; nothing before its first period.
+/// `answer`, delayed by `delay` periods; 0 before its first period.
 Eigen::VectorXd delayed(const Eigen::VectorXd& answer, double delay) {
   Eigen::VectorXd later = Eigen::VectorXd::Zero(answer.size());
-  // Where nothing is delayed, the share of what follows the last period is 0.
+  // For a delay of 0, the weight of the value after the last period is 0.
   const auto at = [&](Eigen::Index k) {
     return k < 0 ? 0.0 : answer[std::min(k, answer.size() - 1)];
   };
@@ -129,7 +129,7 @@ Eigen::VectorXd delayed(const Eigen::VectorXd& answer, double delay) {
   return later;
 }
 
-/// The ratio and the delay with which the model's answer is nearest to the plant's.
+/// The ratio and the delay that fit the model's response to the plant's best.
 void fit(StateAnswer& answer, double period) {
   const int most = static_cast<int>(answer.model.size()) / 2 * kDelaySteps;
   double least = kInfinity;
@@ -140,7 +140,7 @@ void fit(StateAnswer& answer, double period) {
     if (!(size > 0.0)) break;
     const double ratio = later.dot(answer.plant) / size;
     const double error = (answer.plant - ratio * later).squaredNorm();
-    // A later one has to be nearer by more than rounding.
+    // A larger delay must improve the fit by more than rounding.
     if (error < least * (1.0 - 1e-6)) {
       least = error;
       answer.ratio = ratio;
@@ -157,7 +157,7 @@ InputAnswer input_answer(int input, double amplitude, const Paths& paths) {
   return answer;
 }
 
-/// What needs the scale of all drives.
+/// Computes what depends on the scale over all drives.
 void judge(InputAnswer& answer, const PlantAnswers& all) {
   const double to_full = answer.input < 0 ? 1.0 : 1.0 / kAmplitude;
   for (std::size_t i = 0; i < answer.states.size(); ++i) {

@@ -43,7 +43,7 @@ Scenario with_forecast(Scenario scenario,
   return scenario;
 }
 
-/// Stages that a controller of the scenario may look ahead.
+/// The largest number of stages that a controller of the scenario may look ahead.
 int forecast_stages(const Scenario& scenario) {
   return std::max({scenario.controller.horizon, scenario.controller.shield.stages,
                    certified_stages(decision_parts(scenario))});
@@ -51,7 +51,7 @@ int forecast_stages(const Scenario& scenario) {
 
 }  // namespace
 
-/// The closed loop's parts, and its state between the periods.
+/// The components of the closed loop, and its state between periods.
 struct Drive::Parts {
   explicit Parts(const Scenario& of)
       : forecast(new_forecast(of.safe_set)),
@@ -82,14 +82,15 @@ struct Drive::Parts {
     return options.noise ? *options.noise : scenario.disturbance.seeds;
   }
 
-  /// The key of this period's numbers of `stream`, which are those of `seed` until other seeds take
+  /// The key of this period's numbers of `stream`; they come from `seed` until another seed takes
   /// over.
   [[nodiscard]] models::RandomKey noise_key(models::RandomStream stream, std::uint64_t seed) const {
     const auto step = static_cast<std::uint64_t>(period);
     return {.seed = models::noise_seed_at(noise(), seed, step), .stream = stream, .step = step};
   }
 
-  /// Keys of the obstacles' numbers in this period: how they move is a disturbance of the plant.
+  /// Keys of the obstacles' numbers in this period. Their motion uses the plant's seed, as a
+  /// disturbance.
   [[nodiscard]] MovingObstacles::KeyOf obstacle_key() const {
     return [this](models::RandomStream stream) {
       const bool moves = stream == models::RandomStream::kObstacleMotion;
@@ -125,14 +126,14 @@ struct Drive::Parts {
     });
   }
 
-  /// The plant of this drive. Where all drives have the same it is made once, as a vehicle takes
-  /// long to load and to settle.
+  /// Makes the plant of this drive. If all drives share it, it is made only once, since a vehicle
+  /// takes long to load and to settle.
   void take_plant() {
     if (plant && !varies(scenario.disturbance)) return;
     plant = make_plant(scenario, draw_variation(scenario.disturbance, plant_seed()));
   }
 
-  /// Does `work`; what the simulator refuses is a fault, and an interrupt ends the episode, too.
+  /// Does `work`; a simulator error is a fault, and an interrupt ends the episode and propagates.
   template <class Work>
   void guarded(const Work& work) {
     try {
@@ -152,11 +153,11 @@ struct Drive::Parts {
     trace.fault_of = fault_of;
     trace.final_state = state;
     trace.final_obstacles = others.poses();
-    // One that broke, or was stopped midway, is not used again.
+    // A plant that failed or was interrupted is not reused.
     if (how == Outcome::kFault || how == Outcome::kInterrupted) plant.reset();
   }
 
-  /// What follows from the state at a control instant: what is seen, and the end of the episode.
+  /// Updates after a control instant: the observation, and the end of the episode.
   void observe_state() {
     trace.final_state = state;
     trace.final_obstacles = others.poses();
@@ -172,7 +173,7 @@ struct Drive::Parts {
     }
   }
 
-  /// How the episode ends in the present state, if it does.
+  /// The outcome in the present state, if the episode ends there.
   [[nodiscard]] std::optional<Outcome> outcome_now() {
     if (!unsafe_outcome) unsafe_outcome = outcome_in(truly_unsafe.part(state));
     if (scenario.stop_when_unsafe && unsafe_outcome) return unsafe_outcome;
@@ -180,7 +181,7 @@ struct Drive::Parts {
     return unsafe_outcome.value_or(Outcome::kReached);
   }
 
-  /// What is seen of the state in this period.
+  /// The observation of the state in this period.
   [[nodiscard]] Eigen::VectorXd seen() const {
     if (scenario.disturbance.sensor.isZero(0.0)) return state;
     return state + sensor.sample(noise_key(models::RandomStream::kSensor, options.seed));
@@ -279,7 +280,7 @@ struct Drive::Parts {
     }
   }
 
-  /// The last record's period, which is dropped where the process is asked to stop.
+  /// Drives the plant through the last record's period, and drops the record if interrupted.
   PlantStep drive_plant() {
     try {
       return plant->advance(trace.steps.back().input, trace.steps.back().disturbance);
@@ -289,9 +290,9 @@ struct Drive::Parts {
     }
   }
 
-  std::shared_ptr<controller::ObstacleForecast> forecast;  // what is known of others; or null
+  std::shared_ptr<controller::ObstacleForecast> forecast;  // of moving obstacles; or null
   Scenario scenario;
-  controller::UnsafeSet unsafe;  // as far as it is known
+  controller::UnsafeSet unsafe;  // as far as known to the controller
   TrueUnsafeSet truly_unsafe;
   std::unique_ptr<const models::Dynamics> model;
   controller::PlannerSettings settings;
@@ -300,9 +301,9 @@ struct Drive::Parts {
   models::GaussianSampler disturbance;
   models::GaussianSampler sensor;
   MovingObstacles others;
-  std::optional<std::string> vehicle_digest;  // once it is known
-  std::unique_ptr<Plant> plant;               // of the last drive, reset for every one
-  // Of the episode at hand.
+  std::optional<std::string> vehicle_digest;  // once known
+  std::unique_ptr<Plant> plant;               // of the last drive, reset for each one
+  // Of the current episode.
   DriveOptions options;
   int period = 0;
   controller::Gaussian belief;
@@ -313,12 +314,12 @@ struct Drive::Parts {
   std::optional<Outcome> outcome;
   TargetProgress progress{scenario, model->description()};           // of the true state
   TargetProgress believed_progress{scenario, model->description()};  // of the belief's mean
-  std::optional<Outcome> unsafe_outcome;  // what the first unsafe state of it makes of it
+  std::optional<Outcome> unsafe_outcome;  // the outcome that its first unsafe state determines
 };
 
 Drive::Drive(const Scenario& scenario)
     : parts_(std::make_unique<Parts>(with_chosen_points(scenario))) {
-  parts_->outcome = Outcome::kInterrupted;  // none has begun
+  parts_->outcome = Outcome::kInterrupted;  // no episode has begun
 }
 Drive::Drive(Drive&&) noexcept = default;
 Drive& Drive::operator=(Drive&&) noexcept = default;

@@ -27,7 +27,7 @@ EpisodeDriver DriverPool::take(const Scenario& scenario) {
 }
 
 void DriverPool::put_back(const Scenario& scenario, EpisodeDriver driver) {
-  std::optional<EpisodeDriver> longest;  // ends outside of the lock
+  std::optional<EpisodeDriver> longest;  // destroyed after the lock is released
   const std::lock_guard lock(mutex_);
   resting_.emplace_back(&scenario, std::move(driver));
   if (resting_.size() <= limit_) return;

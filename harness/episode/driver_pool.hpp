@@ -1,4 +1,4 @@
-// Episode drivers that threads borrow from one another.
+// A pool of episode drivers that threads share.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace qsmpc::harness {
 
-/// Keeps drivers that are at rest, so that the next episode of their scenario need not make one.
-/// May be used by several threads at the same time.
+/// Keeps idle drivers, so that the next episode of their scenario need not make one. May be used by
+/// several threads simultaneously.
 class DriverPool {
  public:
-  /// Keeps at most `limit` drivers at rest; beyond it, the one that has rested longest goes.
+  /// Keeps at most `limit` idle drivers; beyond that, the one idle for longest is destroyed.
   explicit DriverPool(std::size_t limit) : limit_(limit) {}
 
-  /// As run_episode. `scenario` must outlive the pool, at its address, by which it is known.
+  /// As run_episode. `scenario` must outlive the pool at the same address, which identifies it.
   [[nodiscard]] Trace run(const Scenario& scenario, const EpisodeOptions& options);
 
  private:
@@ -27,8 +27,8 @@ class DriverPool {
   void put_back(const Scenario& scenario, EpisodeDriver driver);
 
   const std::size_t limit_;
-  std::mutex mutex_;                                              // of what follows
-  std::list<std::pair<const Scenario*, EpisodeDriver>> resting_;  // the longest first
+  std::mutex mutex_;                                              // protects the following members
+  std::list<std::pair<const Scenario*, EpisodeDriver>> resting_;  // the longest idle first
 };
 
 }  // namespace qsmpc::harness

@@ -16,9 +16,9 @@
 namespace qsmpc::harness {
 namespace {
 
-// The second plan starts from the first, as the plans of an episode do.
+// The second plan is warm-started from the first, like the plans of an episode.
 constexpr int kRehearsals = 2;
-// A period of which the belief is predicted, as of all but the first.
+// A period whose belief is predicted, as in all periods but the first.
 constexpr int kRehearsedPeriod = 1;
 constexpr double kMilliseconds = 1000.0;  // in a second
 
@@ -31,7 +31,7 @@ class EpisodeDriver::Loop {
       : scenario_(&scenario),
         drive_(scenario),
         controller_(make_controller(drive_.scenario(), drive_.model())) {
-    // Those outside of the program start with the drive, and know of no other situations.
+    // Controllers outside the program start with the drive, and see only its own situations.
     if (!is_outside(scenario.controller)) rehearse();
   }
 
@@ -61,7 +61,7 @@ class EpisodeDriver::Loop {
   }
 
  private:
-  /// Does `work` of the controller, whose failure is a fault of the drive.
+  /// Does `work` of the controller; its failure is a fault of the drive.
   template <class Work>
   void guarded(const Work& work) {
     if (drive_.outcome()) return;
@@ -90,8 +90,8 @@ class EpisodeDriver::Loop {
     if (options.on_step) options.on_step(drive_.trace());
   }
 
-  /// Decides and certifies for beliefs like those that will come, and forgets the decisions: what
-  /// is slow the first time, tables and memory, is then over before the loop begins.
+  /// Decides and certifies for typical beliefs and discards the decisions: slow first-time work,
+  /// such as filling tables and allocating memory, is then done before the loop begins.
   void rehearse() {
     const controller::Gaussian later = drive_.later_belief();
     const Scenario::GaussianValue& first = scenario_->initial_state;
@@ -100,13 +100,13 @@ class EpisodeDriver::Loop {
       for (int n = 0; n < kRehearsals; ++n) {
         const controller::Situation situation = drive_.situation_of(belief, kRehearsedPeriod);
         const StepRecord record = drive_.record_of(situation, controller_->decide(situation));
-        // What takes longer than a period anyway is not to be waited for twice.
+        // If planning takes longer than a period anyway, a second rehearsal is not worth the wait.
         if (record.timing.total > kMilliseconds * scenario_->time_step) break;
       }
     }
   }
 
-  std::unique_ptr<const Scenario> own_scenario_{};  // where the controller is an object
+  std::unique_ptr<const Scenario> own_scenario_{};  // if the controller is an object
   const Scenario* scenario_;
   Drive drive_;
   std::unique_ptr<controller::Controller> controller_;

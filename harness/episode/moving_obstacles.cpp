@@ -19,7 +19,7 @@ RandomKey of_obstacle(RandomKey key, std::size_t index) {
   return key;
 }
 
-/// Which way it goes: that in whose share of the probabilities a uniform number falls.
+/// The way drawn: the one whose share of the probabilities contains a uniform random number.
 std::size_t drawn_way(const std::vector<models::IntendedWay>& ways, const RandomKey& key) {
   double left = models::uniform_sample(1, key)[0];
   for (std::size_t i = 0; i + 1 < ways.size(); ++i) {

@@ -1,5 +1,4 @@
-// The obstacles of a drive that move: where they truly are, what is seen of them, and what is
-// known of where they will be.
+// The moving obstacles of a drive: their true positions, their observations, and their forecast.
 //
 //   MovingObstacles obstacles(safe_set, 0.1, 20, forecast);
 //   obstacles.begin(key), obstacles.see(key);
@@ -22,41 +21,41 @@ namespace qsmpc::harness {
 
 class MovingObstacles {
  public:
-  /// The key of a stream's numbers in the present period.
+  /// The key of a stream's random numbers in the present period.
   using KeyOf = std::function<models::RandomKey(models::RandomStream)>;
 
-  /// Forecasts, of `stages` beyond the present, are written to `forecast`, which is null where
+  /// Forecasts over `stages` stages beyond the present are written to `forecast`, which is null if
   /// nothing moves.
   MovingObstacles(const controller::SafeSet& safe_set, double time_step, int stages,
                   std::shared_ptr<controller::ObstacleForecast> forecast);
 
   [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(bodies_.size()); }
 
-  /// Draws ways and places.
+  /// Draws ways and initial positions.
   void begin(const KeyOf& key);
-  /// One period on. `vehicle`: where it is at the beginning of the period (m), for those that
-  /// yield.
+  /// Advances by one period. `vehicle`: its position at the beginning of the period (m), for
+  /// obstacles that yield.
   void advance(const Eigen::Vector2d& vehicle, const KeyOf& key);
-  /// Sees where they are, once in a period, and writes the forecast.
+  /// Observes the positions, once per period, and writes the forecast.
   void see(const KeyOf& key);
 
-  /// Where they are: offset x, y (m) from where they are written, and turn (rad); 3 x count.
+  /// The true poses: offset x, y (m) from the written position, and turn (rad); 3 x count.
   [[nodiscard]] const Eigen::Matrix3Xd& poses() const { return poses_; }
-  /// Where they were at the beginning of the period that ended last.
+  /// The poses at the beginning of the last completed period.
   [[nodiscard]] const Eigen::Matrix3Xd& last_poses() const { return last_poses_; }
-  /// The same at a share 0 … 1 of the period that ended last.
+  /// The poses at a fraction 0 … 1 of the last completed period.
   [[nodiscard]] Eigen::Matrix3Xd poses_at(double share) const;
-  /// What is seen of the offsets, 2 x count.
+  /// The observed offsets, 2 x count.
   [[nodiscard]] const Eigen::Matrix2Xd& seen() const { return seen_; }
 
  private:
-  /// One of them.
+  /// The state of one obstacle.
   struct Body {
     models::ObstacleMotion motion;
     Eigen::Vector2d centre;
     controller::MotionFilter filter;
     std::size_t way = 0;
-    double clock = 0.0;                                   ///< s that it has been on its way
+    double clock = 0.0;                                   ///< s since it set off
     Eigen::Matrix2d deviation = Eigen::Matrix2d::Zero();  ///< and its rate, along and across
   };
 

@@ -21,7 +21,7 @@ Trace trace_header(const Scenario& scenario, const models::SystemDescription& sy
                    std::uint64_t seed, const std::vector<models::NoiseSeed>& noise) {
   Trace trace;
   trace.scenario = scenario;
-  trace.scenario.safe_set.forecast = nullptr;  // it is the drive's
+  trace.scenario.safe_set.forecast = nullptr;  // belongs to the drive
   trace.scenario.seed = seed;
   trace.scenario.disturbance.seeds = noise;
   trace.scenario_text = to_yaml(trace.scenario);

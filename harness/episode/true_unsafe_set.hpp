@@ -1,4 +1,4 @@
-// What is unsafe in a drive, with the obstacles that move where they truly are.
+// The unsafe set of a drive, with moving obstacles at their true positions.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace qsmpc::harness {
 
-/// A forecast of its own for what moves in the safe set; null where nothing does.
+/// A separate forecast for the moving obstacles of the safe set; null if nothing moves.
 [[nodiscard]] std::shared_ptr<controller::ObstacleForecast> new_forecast(
     const controller::SafeSet& safe_set);
 
@@ -21,10 +21,10 @@ class TrueUnsafeSet {
  public:
   explicit TrueUnsafeSet(controller::SafeSet safe_set);
 
-  /// Puts the obstacles where they are: offset x, y (m) and turn (rad), 3 x count.
+  /// Moves the obstacles: offset x, y (m) and turn (rad), 3 x count.
   void place(const Eigen::Matrix3Xd& poses);
 
-  /// The part that a state is in, and its distance from all of them.
+  /// The part of the unsafe set that a state is in, and its clearance from all parts.
   [[nodiscard]] controller::UnsafePart part(const Eigen::VectorXd& state) const {
     return controller::unsafe_part(state, unsafe_);
   }
@@ -32,8 +32,8 @@ class TrueUnsafeSet {
     return controller::clearance(state, unsafe_);
   }
 
-  /// Of the states at the simulator's steps of the period that `others` have gone through last; not
-  /// a number without any. The obstacles are at its end thereafter.
+  /// The least clearance of the states at the simulator's steps in the last period of `others`; not
+  /// a number without any. Afterwards the obstacles are at the end of the period.
   [[nodiscard]] double least_clearance(const Eigen::MatrixXd& states,
                                        const MovingObstacles& others);
 

@@ -10,8 +10,9 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr double kLargestDrawable = 1e100;
-constexpr double kRounding = 1e-9;     // of a step: what ticks may miss a range's end by
-constexpr double kLargestPlain = 1e6;  // what is not below, or in smaller steps, has an exponent
+constexpr double kRounding = 1e-9;     // of a step: tolerance of ticks at the ends of the range
+constexpr double kLargestPlain = 1e6;  // larger values and smaller steps are labelled with an
+                                       // exponent
 constexpr double kSmallestPlainStep = 1e-4;
 
 bool has_span(double lower, double upper) {
@@ -120,7 +121,7 @@ int common_power(const Axis& axis, int tick_count) {
 }
 
 std::vector<Tick> minor_ticks_of(const Axis& axis) {
-  constexpr int kMostDecades = 5;  // of more, the ticks would run together
+  constexpr int kMostDecades = 5;  // with more, the ticks would run together
   if (axis.scale != Scale::kLog) return {};
   const int first = static_cast<int>(std::lround(std::log10(axis.lower)));
   const int last = static_cast<int>(std::lround(std::log10(axis.upper)));

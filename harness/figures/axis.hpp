@@ -1,4 +1,4 @@
-// One axis of a chart: its range and its ticks, at numbers that people count in.
+// One axis of a chart: its range, and its ticks at round numbers.
 #pragma once
 
 #include <string>
@@ -12,30 +12,30 @@ struct Axis {
   double lower = 0.0;
   double upper = 1.0;
   Scale scale = Scale::kLinear;
-  /// Of a logarithmic axis: the share of its length, at its lower end, that is kept for 0.
+  /// On a logarithmic axis: the share of its length, at the lower end, that is reserved for 0.
   double zero_share = 0.0;
 };
 
 struct Tick {
   double value = 0.0;
-  std::string label;  ///< empty: of a tick between those that are counted in
+  std::string label;  ///< empty: a minor tick
 };
 
-/// Whether `value` can be placed on a linear axis: finite, and no overflow in sight.
+/// Whether `value` can be placed on a linear axis: finite, and well below overflow.
 [[nodiscard]] bool is_drawable(double value);
 
-/// A linear axis about the drawable ones of `values`, not rounded, of a length that is not 0;
-/// 0 … 1 where there are none.
+/// A linear axis around the drawable values, not rounded, of non-zero length; 0 … 1 if there are
+/// none.
 [[nodiscard]] Axis tight_axis(const std::vector<double>& values);
 
-/// The axis about the same values that ends on ticks.
+/// The axis around the same values that ends on ticks.
 [[nodiscard]] Axis rounded_axis(const std::vector<double>& values, int tick_count);
 
-/// A logarithmic axis of whole decades about the positive drawable ones of `values`, but with
-/// nothing below `least` (> 0), which is taken for 0.
+/// A logarithmic axis of whole decades around the positive drawable values. Values below `least` (>
+/// 0) are treated as 0.
 [[nodiscard]] Axis log_axis(const std::vector<double>& values, double least);
 
-/// 1, 2 or 5 times a power of ten, so that about `tick_count` of them fill `span` (> 0).
+/// 1, 2 or 5 times a power of ten, such that about `tick_count` of these steps fill `span` (> 0).
 [[nodiscard]] double tick_step(double span, int tick_count);
 
 /// The multiples of `step` on a linear axis.
@@ -44,16 +44,16 @@ struct Tick {
 /// About `tick_count` ticks; on a logarithmic axis, at powers of ten.
 [[nodiscard]] std::vector<Tick> ticks_of(const Axis& axis, int tick_count);
 
-/// The power of ten that is best taken out of the labels of a linear axis and said once: of its
-/// largest value where they would have to be written with powers of ten; else 0.
+/// The exponent of the power of ten to factor out of the labels of a linear axis: that of its
+/// largest value if the labels would otherwise need powers of ten; else 0.
 [[nodiscard]] int common_power(const Axis& axis, int tick_count);
 
-/// 2 … 9 times the powers of ten of a logarithmic axis of at most five decades, without labels;
-/// none of another axis.
+/// Unlabelled ticks at 2 … 9 times the powers of ten of a logarithmic axis of at most five decades;
+/// none for any other axis.
 [[nodiscard]] std::vector<Tick> minor_ticks_of(const Axis& axis);
 
-/// Where `value` is on the axis: 0 at its lower end, 1 at its upper one. On a logarithmic axis,
-/// what is below the lower end is put there; 0 is put in the middle of its share, if it has one.
+/// Position of `value` on the axis: 0 at the lower end, 1 at the upper end. On a logarithmic axis,
+/// values below the lower end are placed at it, and 0 in the middle of its share, if it has one.
 [[nodiscard]] double position_on(const Axis& axis, double value);
 
 }  // namespace qsmpc::harness

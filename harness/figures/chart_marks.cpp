@@ -14,8 +14,8 @@ struct Corner {
   double y;
 };
 
-/// The strokes of a sign about (0, 0), each through its corners; all signs are of about the same
-/// area to the eye.
+/// The strokes of a marker centred at (0, 0), each through its corners; all markers appear about
+/// equally large.
 std::vector<std::vector<Corner>> strokes_of(int colour) {
   switch (colour) {
     case kOrange:

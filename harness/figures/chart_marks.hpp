@@ -1,16 +1,17 @@
-// The signs that points of a chart are drawn as: one a colour, so that series can be told apart in
-// grey and by those who do not see colours. That of the first colour of the page's palette is a
-// dot, the others are square, triangle, diamond, cross and plus.
+// The markers of a chart's points: one per colour, so that series can be told apart in greyscale
+// and by colour-blind readers. In the order of the page's palette: dot, square, triangle, diamond,
+// cross and plus.
 #pragma once
 
 #include <string>
 
 namespace qsmpc::harness {
 
-/// The sign of `colour` about (x, y), as data of a path; those of several points may be joined.
+/// The marker of `colour` centred at (x, y), as path data; the data of several points may be
+/// concatenated.
 [[nodiscard]] std::string mark_data(int colour, double x, double y);
 
-/// The classes of such a path.
+/// The CSS classes of such a path.
 [[nodiscard]] std::string mark_classes(int colour);
 
 }  // namespace qsmpc::harness

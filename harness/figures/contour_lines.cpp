@@ -11,8 +11,8 @@ using Eigen::Index;
 
 constexpr Index kNone = -1;
 
-/// Follows the lines of one level. A line crosses a grid's edge at most once, and every crossed
-/// edge lies between two cells, each of which joins it to another one: the crossings form rings.
+/// Traces the lines of one level. A line crosses a grid edge at most once. Every crossed edge lies
+/// between two cells, each of which joins it to another crossed edge, so the crossings form rings.
 class LineTracer {
  public:
   LineTracer(const Eigen::Ref<const Eigen::MatrixXd>& values, double level)
@@ -69,7 +69,8 @@ class LineTracer {
     if (count != 4) return;
     const double middle =
         (values_(i, j) + values_(i, j + 1) + values_(i + 1, j + 1) + values_(i + 1, j)) / 4.0;
-    // The lines cut off the two corners that are unlike the middle. Edges 3 and 0 meet in corner 0.
+    // At a saddle, the lines cut off the two corners that differ from the middle. Edges 3 and 0
+    // meet in corner 0.
     if (corner[0] == (middle > level_)) {
       join(edge[0], edge[1]);
       join(edge[2], edge[3]);
@@ -86,7 +87,7 @@ class LineTracer {
     const bool down = edge % 2 == 0;
     const double from = values_(i, j);
     const double to = down ? values_(i + 1, j) : values_(i, j + 1);
-    // The outermost nodes count as below whatever they hold; the crossing stays on the edge.
+    // The outermost nodes count as below whatever their value; the crossing is kept on the edge.
     const double share = (level_ - from) / (to - from);
     const double along = share >= 0.0 && share <= 1.0 ? share : 0.5;
     const auto row = static_cast<double>(i);
@@ -113,7 +114,7 @@ class LineTracer {
 
   const Eigen::Ref<const Eigen::MatrixXd>& values_;
   double level_;
-  std::vector<std::array<Index, 2>> joined_;  ///< of each edge, those its line goes on to
+  std::vector<std::array<Index, 2>> joined_;  ///< for each edge, its neighbours along the line
 };
 
 }  // namespace

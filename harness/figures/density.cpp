@@ -17,9 +17,10 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kTails = 4.0;  // standard deviations of the kernel that a grid reaches past points
-// What a standard deviation is at least: of the greatest one, of the mean's size, and where both
-// are 0. All are far below what a drawing shows and above rounding.
+constexpr double kTails = 4.0;  // how far a grid extends beyond the points, in standard deviations
+                                // of the kernel
+// Lower bounds of a standard deviation: relative to the largest one, relative to the mean's
+// absolute value, and if both are 0. All are far below what a drawing shows and above rounding.
 constexpr double kLeastOfGreatest = 1e-6;
 constexpr double kLeastOfMean = 1e-12;
 constexpr double kLeastOfZero = 1e-9;
@@ -46,7 +47,7 @@ struct PrincipalAxes {
   Eigen::MatrixXd axes;  ///< columns: principal axes times their standard deviations, raised
 };
 
-/// `weights` sum to one. Of a single effective point, the covariance is 0.
+/// `weights` sum to one. The covariance of a single effective point is 0.
 PrincipalAxes principal_axes_of(const Eigen::Ref<const Eigen::MatrixXd>& points,
                                 const Eigen::VectorXd& weights) {
   const Eigen::VectorXd mean = points * weights;
@@ -76,7 +77,8 @@ Eigen::MatrixXd kernels(const Eigen::Ref<const Eigen::VectorXd>& at,
   return peak * (-0.5 * distance.array().square()).exp();
 }
 
-/// Calls work(first, count) for blocks of 0 … size - 1, so that kernels of huge samples fit.
+/// Calls work(first, count) for blocks of 0 … size - 1, so that the kernels of huge samples fit in
+/// memory.
 template <class Work>
 void in_blocks(Index size, const Work& work) {
   constexpr Index kBlock = 4096;
@@ -134,7 +136,8 @@ DensityGrid density_grid(const Eigen::Ref<const Eigen::Matrix2Xd>& points,
   const Eigen::VectorXd w = normalised(weights, points.cols());
   const PrincipalAxes spread = principal_axes_of(points, w);
   DensityGrid grid{.centre = spread.mean, .basis = spread.axes};
-  // In units of the principal axes the kernel is h² I: the product of one along each axis.
+  // In units of the principal axes the kernel's covariance is h² I: a product of one kernel per
+  // axis.
   const double deviation = scott_factor(w, 2);
   const Eigen::Matrix2Xd own = grid.basis.inverse() * (points.colwise() - grid.centre);
   grid.u = spaced_about(own.row(0).transpose(), deviation, count);

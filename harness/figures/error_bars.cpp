@@ -14,8 +14,8 @@ std::string bar_up(const Series& series, std::size_t i, const PlotFrame& frame) 
                      frame.up(series.upper[i]));
 }
 
-/// The left end of a horizontal bar: a stroke, or an arrow where the axis cuts it off; nothing
-/// where the bar begins at its point, as that of a rate of 0 does.
+/// The left end of a horizontal bar: a stroke, or an arrow if the axis cuts it off; nothing if the
+/// bar begins at its point, as it does for a rate of 0.
 std::string left_end(const Series& series, std::size_t i, const PlotFrame& frame) {
   const double lower = series.x_lower[i];
   const double x = frame.across(lower);

@@ -8,8 +8,8 @@
 
 namespace qsmpc::harness {
 
-/// The bars of a series, vertical and horizontal, as data of a path: with a short stroke at either
-/// end, and an arrow where a logarithmic x axis cuts the end off. Empty where there is none.
+/// The vertical and horizontal bars of a series as path data, with a short stroke at either end, or
+/// an arrow if a logarithmic x axis cuts the end off. Empty if there are none.
 [[nodiscard]] std::string error_bars(const Series& series, const PlotFrame& frame);
 
 }  // namespace qsmpc::harness

@@ -24,7 +24,7 @@ MapRectangle rectangle_of(const controller::Outline& outline) {
   return {.x_lower = lower.x(), .x_upper = upper.x(), .y_lower = lower.y(), .y_upper = upper.y()};
 }
 
-/// The rectangle along the axes that a polygon is, if it is one.
+/// The polygon as an axis-aligned rectangle, if it is one.
 std::optional<MapRectangle> as_rectangle(const controller::Outline& outline) {
   const MapRectangle sides = rectangle_of(outline);
   if (outline.corners.cols() != 4) return std::nullopt;
@@ -52,7 +52,7 @@ void add_obstacle(const controller::Outline& outline, PlaneMap& map) {
   }
 }
 
-/// The half-plane that the obstacle is, if it is one: its outline would end somewhere.
+/// The obstacle as a half-plane, if it is one; as a finite outline it would be truncated.
 const controller::HalfPlaneShape* half_plane_of(const controller::Obstacle& obstacle) {
   const controller::PlanarShape* shape = obstacle.shape();
   return shape == nullptr ? nullptr : std::get_if<controller::HalfPlaneShape>(shape);
@@ -66,7 +66,7 @@ MapPath line_through(const Eigen::Matrix2Xd& points, bool closed) {
   return line;
 }
 
-/// The centre line of a path that is followed, and the edges of its road.
+/// Adds the centre line of the path to follow, and the edges of its road.
 void add_road(const Scenario& scenario, PlaneMap& map) {
   const Scenario::Target& target = scenario.target;
   if (!target.course) return;
@@ -116,7 +116,7 @@ PlaneMap ground_map(const Scenario& scenario, const models::SystemDescription& s
                              .is_waypoint = true});
     }
   }
-  // Shapes are in the plane of position, which the axes are wherever there is one.
+  // Shapes live in the plane of position, which the map's axes show if there is one.
   for (std::size_t k = 0; k < scenario.safe_set.obstacles.size(); ++k) {
     if (const auto* half_plane = half_plane_of(scenario.safe_set.obstacles[k])) {
       map.half_planes.push_back(

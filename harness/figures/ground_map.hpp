@@ -1,4 +1,4 @@
-// What a scenario's map shows before anything drives on it.
+// A scenario's map without any drive.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,13 +10,14 @@
 
 namespace qsmpc::harness {
 
-/// Where `state` (state_dim) is, for a system with map_axes; not a number where it is too short.
+/// The place of `state` (state_dim) on the map, for a system with map_axes; NaN if `state` is too
+/// short.
 [[nodiscard]] MapPoint map_point(const Eigen::Ref<const Eigen::VectorXd>& state,
                                  const models::SystemDescription& system);
 
-/// Bounds, obstacles, target and the axes' names, for a system with a position. Obstacles that
-/// restrict other states too are partial. Rectangles along the axes are boxes, whatever they are
-/// called in the scenario.
+/// Bounds, obstacles, target and the axes' names, for a system with a position. Obstacles that also
+/// restrict other states are partial. Axis-aligned rectangles become boxes, however the scenario
+/// describes them.
 [[nodiscard]] PlaneMap ground_map(const Scenario& scenario,
                                   const models::SystemDescription& system);
 

@@ -1,4 +1,4 @@
-// What the signs of a chart or a map mean.
+// The legend of a chart or a map.
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ struct LegendEntry {
   bool operator==(const LegendEntry&) const = default;
 };
 
-/// Entries with a stroke over the whole box, a dot in its middle, and a filled rectangle, in the
-/// style of `classes`.
+/// Entries with a stroke across the whole box, with a dot in its middle, and with a filled
+/// rectangle, in the style of `classes`.
 [[nodiscard]] LegendEntry line_entry(const std::string& classes, const std::string& name);
 [[nodiscard]] LegendEntry dot_entry(const std::string& classes, const std::string& name);
 [[nodiscard]] LegendEntry area_entry(const std::string& classes, const std::string& name);

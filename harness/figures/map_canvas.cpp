@@ -49,8 +49,7 @@ MapCanvas::MapCanvas(const MapRectangle& area)
 }
 
 MapPoint MapCanvas::place(const MapPoint& point) const {
-  // Far outside of the map, where nothing is shown, numbers stay such that every renderer takes
-  // them.
+  // Far outside the map, where nothing is visible, clamp to numbers that every renderer accepts.
   constexpr double kFarOutside = 1e5;  // view box units
   const double x = position_on(x_, point.x) * width_;
   const double y = (1.0 - position_on(y_, point.y)) * height_;
@@ -107,7 +106,7 @@ MapSize MapCanvas::size() const {
 
 std::string MapCanvas::svg(const std::string& content, const MapTexts& texts,
                            const std::string& place) const {
-  // An inner <svg> clips what it shows to its own size.
+  // An inner <svg> clips its content to its own size.
   return fmt::format(
       "<svg{} viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"{}\">\n"
       "<svg x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"clip\">\n{}</svg>\n{}"

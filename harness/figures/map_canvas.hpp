@@ -21,7 +21,7 @@ struct MapRectangle {
   double y_upper = 0.0;
 };
 
-/// All of it: no side is finite.
+/// The whole plane: all sides are infinite.
 [[nodiscard]] MapRectangle unbounded_plane();
 
 struct MapTexts {
@@ -35,42 +35,42 @@ struct MapSize {
   double height = 0.0;
 };
 
-/// How the plane is laid on the view box of the map itself: from the left (x − x_left) · scale,
-/// from the top (y_top − y) · scale.
+/// How the plane maps to the view box of the map proper: (x − x_left) · scale from the left, (y_top
+/// − y) · scale from the top.
 struct MapView {
   double x_left = 0.0;
   double y_top = 0.0;
-  double scale = 1.0;  ///< view box units a metre
+  double scale = 1.0;  ///< view box units per metre
 };
 
 class MapCanvas {
  public:
-  /// Shows `area`, whose sides are finite and longer than 0, and more where the map would otherwise
-  /// be too flat or too tall.
+  /// Shows `area`, whose sides are finite and have non-zero length, and more than it if the map
+  /// would otherwise be too flat or too tall.
   explicit MapCanvas(const MapRectangle& area);
 
-  /// Where a drawable point of the plane is in the view box, from the left and from the top.
+  /// The place of a drawable point of the plane in the view box, from the left and from the top.
   [[nodiscard]] MapPoint place(const MapPoint& point) const;
   [[nodiscard]] MapView view() const { return {x_.lower, y_.upper, scale_}; }
   /// The part of the plane that is shown.
   [[nodiscard]] MapRectangle area() const { return {x_.lower, x_.upper, y_.lower, y_.upper}; }
-  /// Lengths in the view box, of a length in the plane.
+  /// Length in the view box of a length in the plane.
   [[nodiscard]] double length(double metres) const { return metres * scale_; }
 
   /// "3.2 7.1", for path data.
   [[nodiscard]] std::string coordinates(const MapPoint& point) const;
-  /// The same of what `place` has returned.
+  /// The same for a result of `place`.
   [[nodiscard]] static std::string written(const MapPoint& place);
-  /// The part of `rectangle` that is shown, its sides may be infinite; empty if none is.
+  /// The visible part of `rectangle`, whose sides may be infinite; empty if none is visible.
   [[nodiscard]] std::string rectangle(const std::string& classes,
                                       const MapRectangle& rectangle) const;
 
-  /// Size of the map itself, and of the whole drawing, in view box units.
+  /// Size of the map proper, and of the whole drawing, in view box units.
   [[nodiscard]] MapSize inner_size() const { return {.width = width_, .height = height_}; }
   [[nodiscard]] MapSize size() const;
 
-  /// The whole drawing: `content` is clipped to the map, the axes are around it. Texts are escaped.
-  /// `place` holds attributes of the <svg>, such as where it is put.
+  /// The whole drawing: `content`, clipped to the map, with the axes around it. Texts are escaped.
+  /// `place` holds attributes of the <svg>, such as its position.
   [[nodiscard]] std::string svg(const std::string& content, const MapTexts& texts,
                                 const std::string& place = {}) const;
 
@@ -79,8 +79,8 @@ class MapCanvas {
 
   Axis x_;
   Axis y_;
-  double scale_ = 1.0;  // view box units a metre
-  double width_ = 0.0;  // of the map itself, in view box units
+  double scale_ = 1.0;  // view box units per metre
+  double width_ = 0.0;  // of the map proper, in view box units
   double height_ = 0.0;
 };
 

@@ -14,17 +14,18 @@ namespace {
 
 using Eigen::Index;
 
-// Of a whole map; more would not be seen, and would make a file large.
+// Per map; more would not be visible, and would make the file large.
 constexpr std::size_t kMostDots = 4000;
 
-// Lengths of all else on a map from its middle, as far as edges of half-planes count.
+// Edges of half-planes count up to this distance from the map's middle, in lengths of its other
+// content.
 constexpr double kNearEdge = 1.5;
 
 MapPoint point_of(const Eigen::Ref<const Eigen::Matrix2Xd>& points, Index i) {
   return {.x = points(0, i), .y = points(1, i)};
 }
 
-/// Weight of point i: 0 where it is not to be drawn.
+/// Weight of point i; 0 if it is not to be drawn.
 double weight_of(const MapCloud& cloud, Index i) {
   if (!is_drawable(point_of(cloud.points, i))) return 0.0;
   if (cloud.weights.size() == 0) return 1.0;
@@ -38,7 +39,7 @@ std::size_t drawable_dots(const MapCloud& cloud) {
   return count;
 }
 
-/// What the map shows, and the places where something of it is.
+/// Collects the coordinates of the map's content.
 class Extent {
  public:
   void include(const MapPoint& point) {
@@ -46,12 +47,12 @@ class Extent {
     across_.push_back(point.x);
     up_.push_back(point.y);
   }
-  /// What reaches from `point` by these lengths to each side.
+  /// Includes what extends from `point` by these lengths to each side.
   void include(const MapPoint& point, double across, double up) {
     include({.x = point.x - across, .y = point.y - up});
     include({.x = point.x + across, .y = point.y + up});
   }
-  /// Sides that are infinite do not count.
+  /// Infinite sides do not count.
   void include(const MapRectangle& box) {
     across_.insert(across_.end(), {box.x_lower, box.x_upper});
     up_.insert(up_.end(), {box.y_lower, box.y_upper});
@@ -64,8 +65,8 @@ class Extent {
   }
 
  private:
-  /// One axis: the bounds, where they are finite, and what lies about them; what is far beyond is
-  /// cut off, so that the rest stays visible.
+  /// One axis: the bounds, if finite, and the content around them. Content far beyond is cut off,
+  /// so that the rest stays visible.
   [[nodiscard]] static Axis shown(double lower, double upper, std::vector<double> contents) {
     constexpr double kMargin = 0.04;  // of the length, on each side
     const bool bounded = is_drawable(lower) && is_drawable(upper) && upper > lower;
@@ -107,7 +108,8 @@ void include_uncertainty(Extent& extent, const PlaneMap& map) {
   }
 }
 
-/// Of each half-plane the point of its edge that is nearest to the middle of `area`, if it is near.
+/// Includes, for each half-plane, the point of its edge that is nearest to the middle of `area`, if
+/// it is near enough.
 void include_edges(Extent& extent, const PlaneMap& map, const MapRectangle& area) {
   const MapPoint middle{.x = 0.5 * (area.x_lower + area.x_upper),
                         .y = 0.5 * (area.y_lower + area.y_upper)};
@@ -119,8 +121,8 @@ void include_edges(Extent& extent, const PlaneMap& map, const MapRectangle& area
   }
 }
 
-/// `most` ≥ 1 points at most, picked at equal steps of the summed weight (systematic resampling),
-/// so that every region keeps its share.
+/// At most `most` ≥ 1 points, picked at equal steps of the cumulative weight (systematic
+/// resampling), so that every region keeps its share.
 std::vector<MapDot> dots_of(const MapCloud& cloud, std::size_t most) {
   double total = 0.0;
   for (Index i = 0; i < cloud.points.cols(); ++i) total += weight_of(cloud, i);
@@ -145,7 +147,8 @@ std::vector<MapDot> dots_of(const MapCloud& cloud, std::size_t most) {
   return dots;
 }
 
-/// How many dots each cloud may have: small ones keep all of theirs, the others share the rest.
+/// The number of dots that each cloud may have: small clouds keep all of theirs, the others share
+/// the rest.
 std::vector<std::size_t> room_of(const std::vector<MapCloud>& clouds) {
   std::vector<std::size_t> count;
   count.reserve(clouds.size());

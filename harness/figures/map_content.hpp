@@ -1,4 +1,4 @@
-// What of a map can be drawn, and how much of it is.
+// Which parts of a map can be drawn, and how much of them is drawn.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@
 
 namespace qsmpc::harness {
 
-/// What tells a waypoint from the target, within its circle's element.
+/// The attribute of a circle's element that distinguishes a waypoint from the target.
 inline constexpr const char* kWaypointStyle = " style=\"fill-opacity:0.06;stroke-dasharray:4 3\"";
 
-/// "c0" … "c9", whatever number was given.
+/// "c0" … "c9", for any number.
 [[nodiscard]] std::string colour_class(int colour);
 [[nodiscard]] std::string path_classes(const MapPath& path);
 [[nodiscard]] std::string body_classes(const MapBody& body);
@@ -28,14 +28,14 @@ inline constexpr const char* kWaypointStyle = " style=\"fill-opacity:0.06;stroke
 
 [[nodiscard]] std::vector<MapPoint> points_of(const Eigen::Ref<const Eigen::Matrix2Xd>& points);
 
-/// The dots of each cloud: all of them, or, where all clouds together have more than some thousands
-/// of points, as many of the large ones as there is room for.
+/// The dots of each cloud: all of them, or, if all clouds together have more than some thousands of
+/// points, a limited number from the large clouds.
 [[nodiscard]] std::vector<std::vector<MapDot>> dots_of(const PlaneMap& map);
 
-/// Points of all clouds that can be drawn.
+/// Number of drawable points in all clouds.
 [[nodiscard]] std::size_t drawable_dots(const PlaneMap& map);
 
-/// How many points, ellipses and circles cannot be drawn.
+/// Number of points, ellipses and circles that cannot be drawn.
 [[nodiscard]] std::size_t omitted_values(const PlaneMap& map);
 
 }  // namespace qsmpc::harness

@@ -15,9 +15,9 @@ namespace {
 
 // View box units.
 constexpr double kLabelTextSize = 12.0;
-constexpr double kDescent = 2.0;  // of letters below their line
-constexpr double kNear = 9.0;     // of a text to its point
-constexpr double kBold = 1.2;     // how much wider bold letters are
+constexpr double kDescent = 2.0;  // of letters below the baseline
+constexpr double kNear = 9.0;     // distance of a text from its point
+constexpr double kBold = 1.2;     // relative width of bold letters
 
 struct TextBox {
   double left = 0.0;
@@ -26,7 +26,7 @@ struct TextBox {
   double bottom = 0.0;
 };
 
-/// Area that two boxes share.
+/// Area of the intersection of two boxes.
 double overlap(const TextBox& a, const TextBox& b) {
   const double across = std::min(a.right, b.right) - std::max(a.left, b.left);
   const double down = std::min(a.bottom, b.bottom) - std::max(a.top, b.top);
@@ -35,14 +35,14 @@ double overlap(const TextBox& a, const TextBox& b) {
 
 struct TextPlace {
   TextBox box;
-  double away = 0.0;  ///< how much farther from its point than need be
+  double away = 0.0;  ///< extra distance from its point
 };
 
 TextBox box_at(double left, double top, double width) {
   return {.left = left, .right = left + width, .top = top, .bottom = top + kLabelTextSize};
 }
 
-/// The places beside `at` where a text of `width` may stand, the best one first.
+/// Candidate places beside `at` for a text of `width`, the best first.
 std::vector<TextPlace> places_beside(const MapPoint& at, double width) {
   std::vector<TextPlace> places;
   for (const double away : {kNear, 2.0 * kNear, 4.0 * kNear}) {
@@ -63,7 +63,7 @@ std::vector<TextPlace> places_beside(const MapPoint& at, double width) {
   return places;
 }
 
-/// The places about `at` outside of the outline, straight away from it.
+/// Candidate places around `at`, directly outside the outline.
 std::vector<TextPlace> places_outside(const MapCanvas& canvas, const PlacedText& text,
                                       double width) {
   constexpr double kGap = 3.0;
@@ -74,7 +74,8 @@ std::vector<TextPlace> places_outside(const MapCanvas& canvas, const PlacedText&
     const double length = std::max(std::hypot(on.x - middle.x, on.y - middle.y), kNear);
     const double x = (on.x - middle.x) / length;
     const double y = (on.y - middle.y) / length;
-    // From the outline, by what the text itself reaches back, to its middle.
+    // Distance from the outline to the text's middle: half of the text's extent in this direction,
+    // and a gap.
     const double away = std::abs(x) * width / 2.0 + std::abs(y) * kLabelTextSize / 2.0 + kGap;
     places.push_back({.box = box_at(on.x + away * x - width / 2.0,
                                     on.y + away * y - kLabelTextSize / 2.0, width)});
@@ -82,12 +83,12 @@ std::vector<TextPlace> places_outside(const MapCanvas& canvas, const PlacedText&
   return places;
 }
 
-/// How bad a place is, in units of area.
+/// Cost of a place, in units of area.
 double cost_of(const TextPlace& place, const TextBox& map, const std::vector<TextBox>& taken,
                const std::vector<MapPoint>& ink) {
-  constexpr double kAreaOfInk = 8.0;   // what a covered point counts for
-  constexpr double kAreaOfAway = 1.0;  // what a unit of distance counts for
-  constexpr double kOutside = 10.0;    // how much worse a text is that is cut off or on another one
+  constexpr double kAreaOfInk = 8.0;   // per covered point
+  constexpr double kAreaOfAway = 1.0;  // per unit of distance
+  constexpr double kOutside = 10.0;    // weight of text that is cut off or overlaps another
   const TextBox& box = place.box;
   double hidden = (box.right - box.left) * (box.bottom - box.top) - overlap(box, map);
   for (const TextBox& other : taken) hidden += overlap(box, other);
@@ -120,7 +121,7 @@ std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& te
     taken.push_back(places[static_cast<std::size_t>(best)].box);
     const std::string rest = fmt::format(" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", taken.back().left,
                                          taken.back().bottom - kDescent, escape_html(text.text));
-    // The ground is an element of its own: not every program knows paint-order.
+    // The text's background is a separate element: not every program supports paint-order.
     grounds += "<text class=\"time edge\" aria-hidden=\"true\"" + rest;
     svg += "<text class=\"time\"" + rest + "\n";
   }

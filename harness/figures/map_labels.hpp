@@ -1,4 +1,4 @@
-// Texts within a map, each where it hides least.
+// Texts within a map, each placed where it hides least.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@ namespace qsmpc::harness {
 struct PlacedText {
   std::string text;
   MapPoint at{};
-  std::vector<MapPoint> outline{};  ///< what the text stands outside of; empty: beside `at`
+  std::vector<MapPoint> outline{};  ///< the text is placed outside of it; empty: beside `at`
 };
 
-/// Each text at a place near its point, or outside of its outline about it, that lies within the
-/// map and covers no other text and as few of the points `ink` as possible. Points are drawable.
-/// Texts are escaped.
+/// Places each text near its point, or outside of the outline around it, such that it lies within
+/// the map and covers no other text and as few of the points `ink` as possible. Points are
+/// drawable. Texts are escaped.
 [[nodiscard]] std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& texts,
                                     const std::vector<MapPoint>& ink);
 

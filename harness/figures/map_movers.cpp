@@ -9,13 +9,13 @@
 namespace qsmpc::harness {
 namespace {
 
-// In the page's style. All are of the colour of what moves.
+// Classes of the page's style, all in the colour of moving obstacles.
 constexpr std::string_view kWay = "way faint c0";
 constexpr std::string_view kStart = "outline thin c0";
 constexpr std::string_view kEnd = "outline thin broken c0";
 constexpr std::string_view kNearest = "mover c0";
 
-constexpr std::size_t kMostWayPoints = 6000;  // of all ways; more would not be seen
+constexpr std::size_t kMostWayPoints = 6000;  // of all paths together; more would not be visible
 
 std::string outlines_svg(const MapCanvas& canvas, const std::vector<MapMover>& movers,
                          MapPolygon MapMover::*outline, std::string_view classes) {

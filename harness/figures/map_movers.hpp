@@ -1,4 +1,4 @@
-// Obstacles that move, on a map: the way of each, and its outline at moments of it.
+// Moving obstacles on a map: the path of each, and its outline at some moments.
 #pragma once
 
 #include <string>
@@ -11,18 +11,18 @@
 namespace qsmpc::harness {
 
 struct MapMover {
-  std::vector<MapPoint> way{};  ///< of its middle
-  // Outlines of it; without corners: none.
+  std::vector<MapPoint> way{};  ///< of its centre
+  // Its outlines; not drawn if without corners.
   MapPolygon start{};
   MapPolygon end{};
-  MapPolygon nearest{};  ///< where the vehicle was nearest to it
+  MapPolygon nearest{};  ///< at the moment when the vehicle was nearest
 };
 
-/// All of them. What belongs to the moment of the vehicle's is filled, so that many ways do not
-/// hide it.
+/// All of `movers` as SVG elements. The outline of the moment when the vehicle was nearest is
+/// filled, so that many paths do not hide it.
 [[nodiscard]] std::string movers_svg(const MapCanvas& canvas, const std::vector<MapMover>& movers);
 
-/// What the signs mean that `movers` have.
+/// Legend entries for the signs of `movers`.
 [[nodiscard]] std::vector<LegendEntry> mover_entries(const std::vector<MapMover>& movers);
 
 }  // namespace qsmpc::harness

@@ -9,9 +9,9 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kUnseen = 0.05;  // view box units that an outline may be off
+constexpr double kUnseen = 0.05;  // tolerance of an outline, in view box units
 
-/// How deep `point` is in the half-plane, in lengths of its normal.
+/// Depth of `point` in the half-plane, scaled by the length of its normal.
 double depth_in(const MapHalfPlane& half_plane, const MapPoint& point) {
   return half_plane.normal.x * point.x + half_plane.normal.y * point.y - half_plane.offset;
 }
@@ -25,8 +25,8 @@ double distance_to_segment(const MapPoint& point, const MapPoint& from, const Ma
   return std::hypot(point.x - from.x - share * x, point.y - from.y - share * y);
 }
 
-/// Without points that are nearer than `kUnseen` to the line that is left; at least 3 of at
-/// least 3.
+/// Drops points that lie within `kUnseen` of the remaining outline. At least 3 remain of at least
+/// 3.
 std::vector<MapPoint> without_unseen(const std::vector<MapPoint>& points) {
   std::vector<MapPoint> kept;
   for (std::size_t from = 0; from < points.size();) {

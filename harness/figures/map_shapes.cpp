@@ -15,7 +15,7 @@ namespace {
 
 // View box units.
 constexpr double kArrowSize = 7.0;
-constexpr double kLeastLength = 0.05;  // what is shorter is rounded to nothing
+constexpr double kLeastLength = 0.05;  // anything shorter rounds to zero
 
 }  // namespace
 
@@ -23,7 +23,7 @@ std::string polyline_data(const MapCanvas& canvas, const std::vector<MapPoint>& 
                           std::size_t stride) {
   std::string data;
   std::string last;    // coordinates; empty: the line is interrupted
-  bool alone = false;  // whether nothing but a move leads to `last`
+  bool alone = false;  // whether only a move leads to `last`
   const auto interrupt = [&] {
     if (alone) data += "h0";
     alone = false;
@@ -76,7 +76,7 @@ Eigen::Matrix2d principal_axes(const Eigen::Matrix2d& covariance) {
 std::string ellipse_svg(const MapCanvas& canvas, const Eigen::Vector2d& mean,
                         const Eigen::Matrix2d& covariance, double level,
                         const std::string& classes) {
-  // χ² of two degrees of freedom is below −2 ln(1 − p) with probability p.
+  // χ² with two degrees of freedom is below −2 ln(1 − p) with probability p.
   const double radius = std::sqrt(-2.0 * std::log1p(-level));
   const Eigen::Matrix2d axes = radius * principal_axes(covariance);
   const Eigen::Vector2d along = axes.col(1);
@@ -103,12 +103,12 @@ std::string ellipse_svg(const MapCanvas& canvas, const Eigen::Vector2d& mean,
 
 std::string dots_svg(const MapCanvas& canvas, const std::vector<MapDot>& dots,
                      const std::string& classes) {
-  // Diameters in view box units. A cloud of the same ink whatever its number of points: 100 of the
-  // same weight are 3 units wide each.
+  // Diameters in view box units. The inked area does not depend on the number of points: 100 points
+  // of equal weight are 3 units wide each.
   constexpr double kDiameterOfAll = 30.0;
   constexpr double kLeastDiameter = 1.8;
   constexpr double kGreatestDiameter = 10.0;
-  constexpr double kStep = 0.2;  // dots of one size, to this accuracy, are one element
+  constexpr double kStep = 0.2;  // dots of equal size, to this accuracy, share one element
   std::map<int, std::string> by_size;
   for (const MapDot& dot : dots) {
     const double diameter =
@@ -127,7 +127,7 @@ std::string dots_svg(const MapCanvas& canvas, const std::vector<MapDot>& dots,
 std::string mark_svg(const MapCanvas& canvas, const MapPoint& at, bool square,
                      const std::string& classes) {
   const std::string shape = square ? "mark square" : "mark";
-  // Some renderers draw square caps of a line only if it has a length.
+  // Some renderers draw square caps only on a line of non-zero length.
   const std::string data = "M" + canvas.coordinates(at) + (square ? "h0.1" : "h0");
   return "<path class=\"" + shape + " edge\" d=\"" + data + "\"/><path class=\"" + shape + " " +
          classes + "\" d=\"" + data + "\"/>\n";
@@ -143,7 +143,7 @@ std::string arcs_data(const MapCanvas& canvas, const std::vector<controller::Arc
     };
     if (!is_drawable(at(arc.from)) || !is_drawable(at(arc.to))) continue;
     data += "M" + canvas.coordinates(at(arc.from));
-    // In halves: an arc of a full turn would be none.
+    // In two halves: SVG draws nothing for an arc of a full turn.
     for (const double angle : {0.5 * (arc.from + arc.to), arc.to}) {
       data += fmt::format("A{0:.1f} {0:.1f} 0 0 0 {1}", canvas.length(arc.radius),
                           canvas.coordinates(at(angle)));

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kUnitsPerInch = 96.0;
 constexpr double kPointsPerInch = 72.0;
-constexpr const char* kDate = "2000-01-01T00:00:00Z";  // cairo would write the present one
+constexpr const char* kDate = "2000-01-01T00:00:00Z";  // cairo would write the current date
 
 struct HandleDeleter {
   void operator()(RsvgHandle* handle) const { g_object_unref(handle); }

@@ -16,8 +16,8 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kMostLinePoints = 6000;  // of a whole map; more would not be seen
-constexpr std::size_t kMostRoadPoints = 1500;  // of a line on the ground
+constexpr std::size_t kMostLinePoints = 6000;  // per map; more would not be visible
+constexpr std::size_t kMostRoadPoints = 1500;  // per line on the ground
 
 bool has_sides(const MapRectangle& box) {
   return box.x_upper > box.x_lower && box.y_upper > box.y_lower;
@@ -54,7 +54,7 @@ std::string ground_svg(const PlaneMap& map, const MapCanvas& canvas) {
   return svg;
 }
 
-/// Every n-th point is drawn, so that all lines together are not too long.
+/// The stride n for which drawing every n-th point keeps the total size of all lines limited.
 std::size_t line_stride(const PlaneMap& map) {
   std::size_t count = 0;
   for (const MapPath& path : map.paths) count += path.points.size();
@@ -129,7 +129,7 @@ std::string bodies_svg(const PlaneMap& map, const MapCanvas& canvas) {
   return svg;
 }
 
-/// The marks of a path at its first and its last point that can be drawn.
+/// The marks at the first and last drawable points of the paths.
 std::string marks_svg(const PlaneMap& map, const MapCanvas& canvas) {
   const auto drawable = [](const MapPoint& point) { return is_drawable(point); };
   std::string svg;
@@ -145,7 +145,7 @@ std::string marks_svg(const PlaneMap& map, const MapCanvas& canvas) {
   return svg;
 }
 
-/// `count` points of the outermost outline, from the lower right one round.
+/// `count` points around the outermost outline, from the lower right.
 std::vector<MapPoint> outline_of(const MapEllipse& ellipse, int count) {
   double outermost = 0.0;
   for (const double level : ellipse.levels) {
@@ -163,7 +163,7 @@ std::vector<MapPoint> outline_of(const MapEllipse& ellipse, int count) {
   return outline;
 }
 
-/// Points of what texts should not cover.
+/// Points on everything that texts should not cover.
 std::vector<MapPoint> ink_of(const PlaneMap& map) {
   constexpr int kOutlinePoints = 48;
   const std::size_t stride = line_stride(map);
@@ -184,7 +184,7 @@ std::vector<MapPoint> ink_of(const PlaneMap& map) {
 }
 
 std::string labels_svg(const PlaneMap& map, const MapCanvas& canvas) {
-  constexpr int kPlaces = 24;  // round an ellipse
+  constexpr int kPlaces = 24;  // candidates around an ellipse
   std::vector<PlacedText> texts;
   for (const MapLabel& label : map.labels) {
     if (is_drawable(label.at)) texts.push_back({.text = label.text, .at = label.at});
@@ -206,7 +206,7 @@ MapView map_view(const PlaneMap& map) { return canvas_of(map).view(); }
 
 std::string map_drawing(const PlaneMap& map, double x, double y) {
   const MapCanvas canvas = canvas_of(map);
-  // Only where it is put into another drawing; a page leaves place and size to its style.
+  // Only if embedded in another drawing; a page leaves position and size to its style.
   const std::string place =
       x == 0.0 && y == 0.0
           ? ""

@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Each probability once, in order, without those that none is.
+/// The distinct valid probabilities in order.
 std::vector<double> tidy(std::vector<double> shares) {
   std::erase_if(shares, [](double share) { return !is_shown(share); });
   std::sort(shares.begin(), shares.end());
@@ -40,7 +40,7 @@ std::vector<double> levels_of(const MapContours& contours) {
   return tidy(masses);
 }
 
-/// The levels that all of `drawings` have; empty where they differ.
+/// The levels common to all of `drawings`; empty if they differ.
 template <class Drawing>
 std::vector<double> common_levels(const std::vector<Drawing>& drawings) {
   std::vector<double> common;
@@ -52,8 +52,7 @@ std::vector<double> common_levels(const std::vector<Drawing>& drawings) {
   return common;
 }
 
-/// The name of one of `drawings` for the legend, with its levels where the note cannot say them
-/// for all.
+/// The legend name of one of `drawings`, with its levels unless the note states them for all.
 template <class Drawing>
 std::string name_of(const Drawing& drawing, const std::vector<Drawing>& drawings) {
   const std::vector<double> levels = levels_of(drawing);

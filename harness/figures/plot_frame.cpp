@@ -8,14 +8,14 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kZeroShare = 0.15;  // of an axis, where 0 has a place of its own
+constexpr double kZeroShare = 0.15;  // of an axis with a separate place for 0
 
 bool has_ends(const std::vector<double>& lower, const std::vector<double>& upper, std::size_t i) {
   return i < lower.size() && i < upper.size() && is_drawable(lower[i]) && is_drawable(upper[i]);
 }
 
-/// What the axes must show: a point, and the ends of its bars. The lower end of a rate may be
-/// almost 0: a logarithmic axis cuts it off.
+/// Adds what the axes must show: a point, and the ends of its bars. The lower end of a rate's bar
+/// may be almost 0: a logarithmic axis cuts it off.
 void add_point(const Chart& chart, const Series& series, std::size_t i, std::vector<double>& across,
                std::vector<double>& up) {
   across.push_back(series.x[i]);

@@ -1,4 +1,4 @@
-// Where a chart's values are in its drawing: what the files share that draw a part of it.
+// Maps a chart's values to positions in its drawing; shared by the files that draw its parts.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace qsmpc::harness {
 
-// The plot's margins within the drawing, in units of the view box; the page scales it to the width
-// that there is.
+// The plot's margins within the drawing, in units of the view box; the page scales the drawing to
+// the available width.
 inline constexpr double kChartLeft = 78.0;
 inline constexpr double kChartRight = 14.0;
 inline constexpr double kChartTop = 10.0;
@@ -21,7 +21,7 @@ struct PlotFrame {
   Axis x;
   Axis y;
 
-  /// From a value to units of the view box.
+  /// Map a value to units of the view box.
   [[nodiscard]] double across(double value) const {
     return kChartLeft + position_on(x, value) * (kChartWidth - kChartLeft - kChartRight);
   }
@@ -31,10 +31,10 @@ struct PlotFrame {
   }
 };
 
-/// The axes about all that a chart draws.
+/// The axes around everything that a chart draws.
 [[nodiscard]] PlotFrame frame_of(const Chart& chart);
 
-/// Whether point `i` can be drawn, and whether its vertical or horizontal bar can.
+/// Whether point `i` can be drawn, and whether its vertical or its horizontal bar can.
 [[nodiscard]] bool is_shown(const Series& series, std::size_t i);
 [[nodiscard]] bool has_bar(const Series& series, std::size_t i);
 [[nodiscard]] bool has_bar_across(const Series& series, std::size_t i);

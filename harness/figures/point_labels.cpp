@@ -16,15 +16,15 @@ namespace qsmpc::harness {
 namespace {
 
 // Units of the view box.
-constexpr double kLabelSize = 12.5;    // of the letters, as the page's style has it
-constexpr double kLabelDescent = 3.0;  // of letters below their line
-constexpr double kLabelAway = 8.0;     // of a label to its point
+constexpr double kLabelSize = 12.5;    // font size, as in the page's style
+constexpr double kLabelDescent = 3.0;  // of letters below the baseline
+constexpr double kLabelAway = 8.0;     // distance of a label from its point
 constexpr double kLabelAir = 2.0;      // between two labels
-constexpr double kInkSpacing = 3.0;    // of the points that stand for a line
-constexpr double kMarkInk = 6.0;       // what a point's mark counts for, in points of a line
-constexpr double kAwayInk = 0.3;       // what a unit of distance counts for
+constexpr double kInkSpacing = 3.0;    // spacing of the points that represent a line
+constexpr double kMarkInk = 6.0;       // cost of covering a point's mark, in points of a line
+constexpr double kAwayInk = 0.3;       // cost per unit of distance
 
-constexpr double kWrongMarkInk = 6.0;  // what another mark that is nearer counts for
+constexpr double kWrongMarkInk = 6.0;  // cost of a nearer mark of another point
 
 struct InkSpot {
   double x = 0.0;
@@ -36,7 +36,7 @@ struct LabelBox {
   double left = 0.0;
   double top = 0.0;
   double width = 0.0;
-  double away = 0.0;  ///< how far from its point
+  double away = 0.0;  ///< distance from its point
 
   [[nodiscard]] double right() const { return left + width; }
   [[nodiscard]] double bottom() const { return top + kLabelSize; }
@@ -50,7 +50,7 @@ void add_stroke(double x0, double y0, double x1, double y1, std::vector<InkSpot>
   }
 }
 
-/// What a label should not cover.
+/// Adds what a label should not cover.
 void add_ink(const Series& series, const PlotFrame& frame, std::vector<InkSpot>& ink) {
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
     if (!is_shown(series, i)) continue;
@@ -69,7 +69,7 @@ void add_ink(const Series& series, const PlotFrame& frame, std::vector<InkSpot>&
   }
 }
 
-/// Where a label of `width` may stand about a point, the preferred place first.
+/// Candidate places around a point for a label of `width`, the preferred one first.
 std::vector<LabelBox> boxes_about(double x, double y, double width) {
   std::vector<LabelBox> boxes;
   for (const double away : {kLabelAway, 1.7 * kLabelAway, 2.6 * kLabelAway}) {
@@ -104,8 +104,8 @@ double distance_to(const LabelBox& box, double x, double y) {
                     std::max({box.top - y, y - box.bottom(), 0.0}));
 }
 
-/// How bad a place is, in points of a line that are covered. A label that stands nearer to the mark
-/// of another point than to its own would be taken for that one's.
+/// Cost of a place, in covered points of a line. A label nearer to another point's mark than to its
+/// own would be attributed to that other point.
 double cost_of_box(const LabelBox& box, const std::vector<InkSpot>& ink) {
   double cost = kAwayInk * box.away;
   for (const InkSpot& spot : ink) {

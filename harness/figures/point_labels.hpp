@@ -1,4 +1,4 @@
-// What stands beside the points of a chart.
+// Labels beside the points of a chart.
 #pragma once
 
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace qsmpc::harness {
 
-/// The labels of all series as <text> elements, each near its point, within the plot, and where it
-/// covers least of points, lines and bars. One that would cover another label is left out. Escaped.
+/// The labels of all series as escaped <text> elements, each near its point, within the plot, and
+/// where it covers the fewest points, lines and bars. A label that would cover another one is left
+/// out.
 [[nodiscard]] std::string point_labels(const Chart& chart, const PlotFrame& frame);
 
 }  // namespace qsmpc::harness

@@ -22,13 +22,13 @@ namespace {
 constexpr double kWidth = kChartWidth;
 constexpr double kHeight = kChartHeight;
 constexpr const char* kAreaClass = "area";
-constexpr std::size_t kMostPoints = 1000;  // of a line; more would not be seen
-constexpr std::size_t kMarksOnLine = 8;    // where it has many points
-constexpr double kNameSize = 14.5;         // of letters on a telephone, where they are largest
-constexpr std::size_t kAllMarked = 12;     // a line of so many points has a mark at each
+constexpr std::size_t kMostPoints = 1000;  // per line; more would not be visible
+constexpr std::size_t kMarksOnLine = 8;    // if it has many points
+constexpr double kNameSize = 14.5;         // font size on a telephone, where it is largest
+constexpr std::size_t kAllMarked = 12;     // a line of up to this many points has a mark at each
 
-/// Of each stretch of a long line, its least and its greatest value in the order of their times;
-/// of one with a gap, the gap too.
+/// The points to draw: of each stretch of a long line, its minimum and maximum in their order; of a
+/// stretch with a gap, also the gap.
 std::vector<std::size_t> drawn_indices(const Series& series) {
   const std::size_t count = std::min(series.x.size(), series.y.size());
   const std::size_t stretch =
@@ -54,7 +54,7 @@ std::vector<std::size_t> drawn_indices(const Series& series) {
 
 struct PathData {
   std::string line;
-  std::string dots;  ///< points that no line leads to
+  std::string dots;  ///< isolated points
 };
 
 /// A bar at an upper limit, and an arrow down from it.
@@ -91,13 +91,13 @@ PathData path_data(const Series& series, const PlotFrame& frame) {
   return data;
 }
 
-/// Whether a line has signs along it, by which it can be told from others.
+/// Whether a line has markers that distinguish it from others.
 bool is_marked(const Series& series) { return series.mark == Mark::kLine && !series.dashed; }
 bool has_marks(const Chart& chart, const Series& series) {
   return is_marked(series) && std::ranges::count_if(chart.series, is_marked) > 1;
 }
 
-/// Signs along a line, at other places for another colour.
+/// Markers along a line, at places that depend on its colour.
 std::string line_marks(const Series& series, const PlotFrame& frame) {
   std::vector<std::size_t> shown;
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
@@ -124,7 +124,7 @@ std::string line_classes(const Series& series) {
                      palette_index(series), series.dashed ? " dash" : "");
 }
 
-/// `label`, of values that are shown divided by 10^`power`: "x (10⁻⁵ m)" of "x (m)".
+/// `label` for values that are shown divided by 10^`power`: "x (10⁻⁵ m)" for "x (m)".
 std::string with_power(const std::string& label, int power) {
   if (power == 0) return label;
   const std::string factor = format_power_of_ten(power);
@@ -158,22 +158,23 @@ std::vector<Tick> ticks_across(const Chart& chart, const PlotFrame& frame) {
   return ticks;
 }
 
-/// A gap between the place of 0 and the rest of a logarithmic x axis, with a stroke at either side,
-/// within the axis's path; empty without such a place.
+/// Path data of the break between the place of 0 and the rest of a logarithmic x axis: a gap with a
+/// stroke at either side; empty without such a place.
 std::string axis_break(const PlotFrame& frame, double foot) {
   if (frame.x.zero_share <= 0.0) return {};
   const double x = 0.5 * (frame.across(0.0) + frame.across(frame.x.lower));
   return fmt::format("H{0:.1f}m-2 4l4 -8m4 0l-4 8M{1:.1f} {2:.1f}", x - 2.0, x + 2.0, foot);
 }
 
-/// The same of the y axis, from its top on.
+/// The same for the y axis, from its top on.
 std::string axis_break_up(const PlotFrame& frame) {
   if (frame.y.zero_share <= 0.0) return {};
   const double y = 0.5 * (frame.up(0.0) + frame.up(frame.y.lower));
   return fmt::format("V{0:.1f}m-4 2l8 -4m0 4l-8 4M{1:.1f} {2:.1f}", y - 2.0, kChartLeft, y + 2.0);
 }
 
-/// Upwards about `middle`, in two lines where one would leave the drawing.
+/// The label of the y axis, reading upwards and centred at `middle`; in two lines if one would
+/// leave the drawing.
 std::string y_label_svg(const std::string& label, double middle) {
   const auto line = [&](int x, const std::string& text) {
     return fmt::format(
@@ -187,13 +188,13 @@ std::string y_label_svg(const std::string& label, double middle) {
   return line(11, label.substr(0, half)) + line(25, label.substr(half + 1));
 }
 
-/// Where the middle of a name below the axis is that belongs to `x`: within the drawing.
+/// The middle of the name below the axis that belongs to `x`, kept within the drawing.
 double name_place(double x, const std::string& name) {
   const double half = 0.5 * estimated_width(name, kNameSize);
   return std::max(std::min(x, kWidth - half), half);
 }
 
-/// Whether two names side by side below the axis would touch: they then stand in two rows.
+/// Whether two neighbouring names below the axis would touch; names are then set in two rows.
 bool are_staggered(const Chart& chart, const PlotFrame& frame) {
   constexpr double kNameGap = 6.0;
   for (std::size_t n = 0; n + 1 < chart.x_names.size(); ++n) {
@@ -253,7 +254,7 @@ std::string areas_svg(const Chart& chart, const PlotFrame& frame) {
   return svg;
 }
 
-/// What the drawing leaves out, so that nothing is hidden; empty if nothing is.
+/// States what the drawing leaves out; empty if nothing.
 std::string omissions(const Chart& chart) {
   std::size_t broken = 0;
   for (const Series& series : chart.series) {
@@ -307,7 +308,7 @@ bool has_points(const Chart& chart) {
 
 std::string chart_drawing(const Chart& chart, double x, double y) {
   const PlotFrame frame = frame_of(chart);
-  // Only where it is put into another drawing; a page leaves place and size to its style.
+  // Only if embedded in another drawing; a page leaves position and size to its style.
   const std::string place =
       x == 0.0 && y == 0.0 ? ""
                            : fmt::format(" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\"", x,

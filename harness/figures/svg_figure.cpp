@@ -19,18 +19,20 @@ constexpr double kTitleHeight = 26.0;
 constexpr double kLineHeight = 17.0;  // of a note or an entry of the legend
 constexpr double kGap = 22.0;         // between rows of panels
 constexpr double kFigureText = 12.5;
-constexpr double kSmallFigureText = 14.5;  // before a figure shrinks to the columns of a paper
+constexpr double kSmallFigureText = 14.5;  // before a figure is scaled down to the columns of a
+                                           // paper
 constexpr double kOneColumn = 336.0;       // 3.5 inches
 constexpr double kTwoColumns = 687.0;      // 7.16 inches
-constexpr double kSwatchGap = 8.0;         // between a sign of the legend and its name
+constexpr double kSwatchGap = 8.0;         // between a legend's sign and its name
 constexpr double kEntryGap = 18.0;         // between entries of the legend
-// A letter on average, of small print and of the legend.
+// Average width of a letter, in small print and in the legend.
 constexpr double kNoteLetter = 6.15;
 constexpr double kNameLetter = 6.9;
 
 constexpr std::string_view kFontFamily = "'Liberation Sans',Arial,Helvetica,sans-serif";
 
-// Plain colours, those of the page in the light, since few programs but browsers know variables.
+// Plain colours, those of the page's light theme, since few programs other than browsers support
+// CSS variables.
 constexpr std::string_view kStyle =
     "text{fill:#16202a}"
     "text.title{font-size:15px;font-weight:600}text.note,text.label{fill:#55636f}"
@@ -63,7 +65,7 @@ constexpr std::string_view kStyle =
     "text.time{font-size:12px;font-weight:600}"
     "text.edge{stroke:#ffffff;stroke-width:3px;stroke-linejoin:round}";
 
-/// Of obstacles that move, which few figures have.
+/// Style of moving obstacles, which few figures have.
 constexpr std::string_view kMoverStyle = ".mover{fill:#0072b2;fill-opacity:.3;stroke-width:.9}";
 
 /// What differs between a chart and a map.
@@ -105,7 +107,7 @@ std::string text_at(std::string_view classes, double x, double y, const std::str
                      escape_html(text));
 }
 
-/// What stands above a drawing, and its height.
+/// A block of SVG, such as the texts above a drawing, and its height.
 struct Head {
   std::string svg;
   double height = 0.0;
@@ -119,13 +121,13 @@ double text_size(const FigureStyle& style) {
   return style.columns == 0 ? kFigureText : kSmallFigureText;
 }
 
-/// Entries one beside the other while they fit `width`; a long name takes several lines.
+/// Entries side by side while they fit `width`; a long name takes several lines.
 Head legend_svg(const std::vector<LegendEntry>& entries, double width, double letters) {
   const std::size_t columns =
       letters_in(width - kSwatchWidth - kSwatchGap, kNameLetter * letters / kFigureText);
   Head legend;
   double x = 0.0;
-  double y = 0.0;  // of the line's foot
+  double y = 0.0;  // of the line's lower edge
   for (const LegendEntry& entry : entries) {
     const std::vector<std::string> lines = wrapped(entry.name, columns);
     double needed = 0.0;
@@ -150,7 +152,7 @@ Head legend_svg(const std::vector<LegendEntry>& entries, double width, double le
   return legend;
 }
 
-/// About (0, 0), its top left corner.
+/// Relative to (0, 0), its top left corner.
 Head head_of(const Part& part, const FigureStyle& style) {
   Head head;
   double y = part.title.empty() ? 0.0 : kTitleHeight - 10.0;
@@ -176,7 +178,7 @@ std::string panel_svg(const Panel& panel, const Part& part, const FigureStyle& s
   return svg + std::visit([&](const auto& own) { return drawing_of(own, corner.x, y); }, panel);
 }
 
-/// Where the columns begin, and where the last one ends with a margin.
+/// Where each column begins, and where the last one ends, including a margin.
 std::vector<double> columns_of(const std::vector<Part>& parts, const FigureStyle& style) {
   std::vector<double> columns = {kMargin};
   const std::size_t in_row = std::min(parts.size(), style.columns == 1 ? 1 : kPanelsInRow);
@@ -190,11 +192,11 @@ std::vector<double> columns_of(const std::vector<Part>& parts, const FigureStyle
   return columns;
 }
 
-/// What is `width` x `height` units large and has `in_row` panels side by side, as wide as `style`
-/// says.
+/// The document of `width` x `height` units with `in_row` panels side by side, scaled to the width
+/// that `style` asks for.
 std::string document(double width, double height, std::size_t in_row, const FigureStyle& style,
                      const std::string& body) {
-  // One panel alone has the letters of panels side by side: it takes half of two columns.
+  // A single panel keeps the font size of panels side by side: it takes half of two columns.
   const bool is_narrow = style.columns == 1 || in_row == 1;
   const double shown = style.columns == 0 ? width : is_narrow ? kOneColumn : kTwoColumns;
   return fmt::format(

@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr mode_t kFileMode = 0666;  // what the user's umask leaves of it
+constexpr mode_t kFileMode = 0666;  // masked by the user's umask
 constexpr mode_t kFolderMode = 0777;
 
 [[noreturn]] void fail(const std::string& path, const std::string& doing, int error) {
@@ -31,8 +31,8 @@ int open_retrying(const std::string& path, int flags) {
   return descriptor;
 }
 
-// 0, or the error. Devices, pipes and some network file systems cannot sync, and say EINVAL: there
-// is nothing to be made durable then.
+// Returns 0 or the error. Devices, pipes and some network file systems cannot sync and report
+// EINVAL: then nothing can be made durable.
 int sync_error(int descriptor) {
   int status = 0;
   do {
@@ -41,7 +41,7 @@ int sync_error(int descriptor) {
   return status == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
 }
 
-// Opened anew by its name, since a library given `partial_path()` may have put another file there.
+// Reopens the file by name, since a library given `partial_path()` may have put another file there.
 void sync_path(const std::string& path, int flags) {
   const int descriptor = open_retrying(path, O_RDONLY | flags);
   if (descriptor < 0) fail(path, "be opened again", errno);
@@ -72,7 +72,7 @@ void commit_partial_file(const std::string& path) { commit_file(partial_path_of(
 
 PendingFile::PendingFile(std::string path)
     : path_(std::move(path)), partial_path_(partial_path_of(path_)) {
-  // A link in its place would let what is written end up elsewhere.
+  // O_NOFOLLOW: a symbolic link could redirect the output elsewhere.
   descriptor_ = open_retrying(partial_path_, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW);
   if (descriptor_ < 0) fail(partial_path_, "be written", errno);
 }
@@ -93,7 +93,7 @@ void PendingFile::write(std::string_view bytes) {
 
 void PendingFile::close_file() {
   const int descriptor = std::exchange(descriptor_, -1);
-  // Linux frees the descriptor even when close() was interrupted; any other error is lost data.
+  // Linux frees the descriptor even when close() was interrupted; any other error means lost data.
   if (descriptor >= 0 && ::close(descriptor) != 0 && errno != EINTR) {
     fail(path_, "be written", errno);
   }
@@ -125,7 +125,7 @@ void make_durable_folder(const std::string& path, const std::string& base) {
   if (path == base || std::filesystem::is_directory(path, error)) return;
   const std::string parent = folder_of(path);
   make_durable_folder(parent, base);
-  // Another may have made it meanwhile.
+  // EEXIST: another process may have created it meanwhile.
   if (::mkdir(path.c_str(), kFolderMode) != 0 && errno != EEXIST) {
     fail(path, "be made a folder", errno);
   }

@@ -18,7 +18,7 @@ std::string own_object_file() {
   if (dladdr(reinterpret_cast<const void*>(&own_object_file), &object) != 0 &&
       object.dli_fname != nullptr) {
     const fs::path path = object.dli_fname;
-    // Of a program it is what it was called by.
+    // For a program, dli_fname is the name that it was called by.
     const bool is_library = path.filename().string().find(".so") != std::string::npos;
     if (is_library || path.is_absolute()) {
       const fs::path canonical = fs::weakly_canonical(path, error);

@@ -19,7 +19,7 @@ namespace {
                 std::generic_category().message(errno));
 }
 
-// `call` again for as long as a signal interrupted it.
+// Repeats `call` while a signal interrupts it.
 template <typename Call>
 auto uninterrupted(const Call& call) -> decltype(call()) {
   auto result = call();
@@ -30,7 +30,7 @@ auto uninterrupted(const Call& call) -> decltype(call()) {
 }  // namespace
 
 RandomAccessFile::RandomAccessFile(std::string path) : path_(std::move(path)) {
-  constexpr mode_t kMode = 0666;  // what the user's umask leaves of it
+  constexpr mode_t kMode = 0666;  // masked by the user's umask
   constexpr int kFlags = O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW;
   descriptor_ = uninterrupted([&] { return ::open(path_.c_str(), kFlags, kMode); });
   if (descriptor_ < 0) throw_system_words(path_, "written");

@@ -1,4 +1,4 @@
-// Files that are read and written anywhere, e.g. by a library that makes a file out of order.
+// Files with random access, e.g. for a library that writes a file out of order.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 namespace qsmpc::harness {
 
 /// A file that is open for reading and writing. Members throw IoError with its path and the
-/// system's words. Closing it leaves it where it is, with what was written.
+/// system's message. The destructor closes the file and keeps what was written.
 class RandomAccessFile {
  public:
-  /// Creates the file at `path`, or empties the one that is there. A symbolic link is refused.
+  /// Creates the file at `path`, or truncates the existing one. A symbolic link is refused.
   explicit RandomAccessFile(std::string path);
   RandomAccessFile(const RandomAccessFile&) = delete;
   RandomAccessFile& operator=(const RandomAccessFile&) = delete;
@@ -20,14 +20,15 @@ class RandomAccessFile {
 
   [[nodiscard]] const std::string& path() const { return path_; }
 
-  /// Bytes.
+  /// Size of the file, bytes.
   [[nodiscard]] std::int64_t size() const;
 
-  /// Puts all of `bytes` at `position` (bytes), where they outlive this process; with a gap of
-  /// zeros where that is beyond the end.
+  /// Writes all of `bytes` at `position` (bytes); they survive this process. A gap before a
+  /// position beyond the end is filled with zeros.
   void write_at(std::int64_t position, std::span<const std::uint8_t> bytes);
 
-  /// Fills the beginning of `out` from `position` on. Returns the number of bytes; 0: the end.
+  /// Reads into the beginning of `out` from `position` on. Returns the number of bytes read; 0 at
+  /// the end.
   std::size_t read_at(std::int64_t position, std::span<std::uint8_t> out) const;
 
  private:

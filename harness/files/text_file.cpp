@@ -23,7 +23,7 @@ std::string read_descriptor(int descriptor, const std::string& path) {
   if (::fstat(descriptor, &status) != 0) fail_to_read(path, words(errno));
   if (S_ISDIR(status.st_mode)) fail_to_read(path, "a folder");
   if (!S_ISREG(status.st_mode)) fail_to_read(path, "a device or pipe");
-  // One byte more than allowed is enough to see that a file is too large, whatever its size says.
+  // Reading one byte more than allowed reveals a file that is too large, whatever size it reports.
   std::string text(kMaxTextFileBytes + 1, '\0');
   std::size_t size = 0;
   while (size < text.size()) {

@@ -1,4 +1,4 @@
-// Text files that users write, read defensively.
+// Defensive reading of text files that users write.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,11 @@ namespace qsmpc::harness {
 
 inline constexpr std::size_t kMaxTextFileBytes = std::size_t{1} << 20U;
 
-/// Whether there is a regular file at `path`; not so, too, where the system does not tell.
+/// Whether there is a regular file at `path`; false also if the system does not tell.
 [[nodiscard]] bool is_file(const std::filesystem::path& path);
 
-/// The content of a regular file. Throws InputError when there is none at `path`, when it cannot be
-/// read, or when it is larger than kMaxTextFileBytes.
+/// The content of a regular file. Throws InputError if there is none at `path`, if it cannot be
+/// read, or if it is larger than kMaxTextFileBytes.
 [[nodiscard]] std::string read_text_file(const std::string& path);
 
 }  // namespace qsmpc::harness

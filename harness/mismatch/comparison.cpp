@@ -23,7 +23,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr int kTimedPaths = 15;  // their median is not moved by a few interruptions
+constexpr int kTimedPaths = 15;  // so that a few interruptions do not affect the median
 
 std::vector<std::string> without_repeats(const std::vector<std::string>& names) {
   std::vector<std::string> kept;
@@ -40,8 +40,8 @@ ResidualSample residuals_of(const std::vector<EpisodeResult>& episodes) {
   return sample;
 }
 
-/// The residuals of the periods that at least half of the episodes have, as far as they are whole
-/// stretches of a horizon after the first `first` periods: each stretch a sample of its own.
+/// The residuals of the periods that at least half of the episodes have, truncated to whole
+/// stretches of a horizon after the first `first` periods: each stretch is a separate sample.
 ResidualSample stretches(const std::vector<EpisodeResult>& episodes, Eigen::Index first,
                          Eigen::Index horizon) {
   std::vector<Eigen::Index> lengths;
@@ -58,19 +58,19 @@ ResidualSample stretches(const std::vector<EpisodeResult>& episodes, Eigen::Inde
   return sample;
 }
 
-/// A plant that is to be compared.
+/// A plant to be compared.
 struct Candidate {
   std::string name;
   Scenario scenario;
   std::unique_ptr<PlantPool> pool{};
 };
 
-/// The comparison in the making: what all plants share.
+/// A comparison in progress: the data that all plants share.
 class Comparing {
  public:
   Comparing(const Scenario& scenario, const ComparisonOptions& options)
       : options_(options), run_(executor_of(usable_threads(options.threads))), scenario_(scenario) {
-    // One thread an episode, and nothing that depends on how fast it is.
+    // One thread per episode, and no dependence on wall-clock time.
     scenario_.controller.threads = 1;
     scenario_.controller.deadline = std::numeric_limits<double>::infinity();
     model_ = model_of(scenario_);
@@ -111,7 +111,7 @@ class Comparing {
                         .found = options_.error_plant,
                         .expected = expected_names(options_.error_plant, names)});
     }
-    // All names before the first file: a wrong name is said first.
+    // Checks all names before opening any file, so that a wrong name is reported first.
     for (const std::string& name : names) {
       candidates_.push_back({.name = name, .scenario = with_plant(scenario_, name)});
     }
@@ -194,7 +194,7 @@ class Comparing {
         }
         planned.units.push_back(std::move(path));
       }
-      // The plan's last period counts among the later ones.
+      // The plan's last period counts as one of the later periods.
       const Eigen::Index horizon = result_.policy.horizon();
       const Eigen::Index first = horizon - 1;
       result_.measured_error =
@@ -206,7 +206,7 @@ class Comparing {
 
   const ComparisonOptions& options_;
   controller::Executor run_;
-  Scenario scenario_;  // as it is simulated
+  Scenario scenario_;  // with the settings of the simulation
   std::unique_ptr<const models::Dynamics> model_;
   controller::Gaussian belief_;
   std::vector<Candidate> candidates_;
@@ -226,7 +226,7 @@ std::vector<int> exceeded_stages(const std::vector<HorizonStage>& horizon,
                                  const std::vector<controller::StageCertificate>& certificates) {
   std::vector<int> stages;
   for (std::size_t k = 0; k < horizon.size(); ++k) {
-    // Written so that a certificate that is not a number is one that does not hold.
+    // The negation also counts a certificate that is not a number as exceeded.
     if (!(certificates[k].value >= horizon[k].unsafe_limits.lower)) {
       stages.push_back(horizon[k].stage);
     }

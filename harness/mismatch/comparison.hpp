@@ -1,12 +1,13 @@
-// What `qsmpc compare` computes: how far plants are from the planner's model, in closed loop, in
-// every period, and along the horizon of one plan, and what that does to the certificates.
+// The computation of `qsmpc compare`: how far plants deviate from the planner's model, in closed
+// loop, in every period and along the horizon of one plan, and what that means for the
+// certificates.
 //
 //   const auto comparison = compare_plants(load_scenario("dubins_corridor"),
 //                                          {.plants = {"analytic", "mujoco_car"}});
 //   comparison->plants[1].one_step.rmse;       // by state
 //   write_comparison(*comparison, {}, "out/comparison");
 //
-// docs/compare.md says what each number means.
+// docs/compare.md defines every number.
 #pragma once
 
 #include <cstdint>
@@ -32,29 +33,30 @@
 namespace qsmpc::harness {
 
 struct ComparisonOptions {
-  std::vector<std::string> plants{};  ///< as `with_plant` takes them; empty: `default_plants`
-  int episodes = 50;                  ///< ≥ 1, of each plant
-  std::int64_t paths = 1000;          ///< ≥ 1, of each plant
-  int threads = 0;                    ///< at most; 0: as many as the processor runs at once
+  std::vector<std::string> plants{};  ///< as for `with_plant`; empty: `default_plants`
+  int episodes = 50;                  ///< ≥ 1, per plant
+  std::int64_t paths = 1000;          ///< ≥ 1, per plant
+  int threads = 0;                    ///< upper limit; 0: the processor's hardware threads
   /// The plant whose model error is measured, one of `plants`; empty: none.
   std::string error_plant{};
-  /// Called once all plants are made, before anything is simulated; what it throws passes through.
+  /// Called once all plants are made, before any simulation; its exceptions propagate.
   std::function<void()> on_plants_ready{};
-  /// Asked by several threads; true gives the work up.
+  /// Called by several threads; returning true aborts the comparison.
   std::function<bool()> should_stop{};
-  /// Told units of work done, their total and what is being done, by one thread at a time.
+  /// Receives the completed and total units of work and the current task, from one thread at a
+  /// time.
   SharedWork::Progress on_progress{};
 };
 
-/// A plant beside the planner's model.
+/// A plant compared with the planner's model.
 struct PlantComparison {
   std::string name;
   std::vector<EpisodeResult> episodes{};
   ClosedLoop closed_loop{};
   ResidualStatistics one_step{};  ///< of the episodes
-  PlantPaths paths{};             ///< under the plan
+  PlantPaths paths{};             ///< under the plan's policy
   std::vector<HorizonStage> horizon{};
-  double speed = 0.0;  ///< simulated seconds a second on one core; wall clock, as nothing else is
+  double speed = 0.0;  ///< simulated seconds per second on one core; wall clock, unlike all else
 
   /// Stages whose certificate in force is below the lower limit of the observed rate.
   std::vector<int> exceeded_stages{};
@@ -66,36 +68,36 @@ struct Comparison {
   std::string scenario_text;         ///< the resolved scenario as YAML
   std::string version;
   std::int64_t paths = 0;
-  std::int64_t w2_paths = 0;                           ///< of them, how many enter W2
-  controller::Policy policy;                           ///< of the plan from the initial belief
-  std::vector<controller::DiscreteMeasure> particles;  ///< that it predicts, stages 0 … horizon
-  std::vector<controller::Points> model_paths;         ///< stages 0 … horizon
-  std::vector<W2Floor> floors;                         ///< stages 0 … horizon
+  std::int64_t w2_paths = 0;                               ///< number of the paths that enter W2
+  controller::Policy policy;                               ///< of the plan from the initial belief
+  std::vector<controller::DiscreteMeasure> particles;      ///< predicted, stages 0 … horizon
+  std::vector<controller::Points> model_paths;             ///< stages 0 … horizon
+  std::vector<W2Floor> floors;                             ///< stages 0 … horizon
   std::vector<controller::StageCertificate> certificates;  ///< for the model, stages 1 … horizon
-  /// With the scenario's model error, where it has one: these are then in force.
+  /// The same with the scenario's model error, where it has one; these are then in force.
   std::optional<std::vector<controller::StageCertificate>> with_error;
   std::vector<PlantComparison> plants;
-  std::string error_plant;                               ///< where a model error was measured
-  std::optional<controller::ModelError> measured_error;  ///< norms with their margin
+  std::string error_plant;                               ///< whose model error was measured
+  std::optional<controller::ModelError> measured_error;  ///< norms include their margin
 
   [[nodiscard]] const std::vector<controller::StageCertificate>& in_force() const {
     return with_error ? *with_error : certificates;
   }
 };
 
-/// "analytic", and "mujoco" where that is the scenario's own plant.
+/// "analytic", and "mujoco" if that is the scenario's own plant.
 [[nodiscard]] std::vector<std::string> default_plants(const Scenario& scenario);
 
-/// The stages of `horizon` whose certificate, at the same place in `certificates`, is below the
-/// lower limit of the observed rate.
+/// The stages of `horizon` whose certificate, the corresponding element of `certificates`, is below
+/// the lower limit of the observed rate.
 [[nodiscard]] std::vector<int> exceeded_stages(
     const std::vector<HorizonStage>& horizon,
     const std::vector<controller::StageCertificate>& certificates);
 
-/// Compares the plants; those named twice are taken once. Nothing if `should_stop` said so before
-/// the end. But for `speed`, the result depends on the scenario (its seed included) and the options
-/// alone, not on the number of threads: a deadline of the planner is therefore left out. Throws
-/// InputError on a plant that is not known or whose file is wrong, before anything is simulated.
+/// Compares the plants; duplicate names are ignored. Nothing if `should_stop` returned true before
+/// the end. Apart from `speed`, the result depends only on the scenario (including its seed) and
+/// the options, not on the number of threads; a deadline of the planner is therefore ignored.
+/// Throws InputError on an unknown plant or an invalid plant file, before anything is simulated.
 [[nodiscard]] std::optional<Comparison> compare_plants(const Scenario& scenario,
                                                        const ComparisonOptions& options);
 

@@ -34,7 +34,7 @@ ComparisonSizes comparison_sizes(const Comparison& comparison) {
           .paths = static_cast<std::size_t>(comparison.paths)};
 }
 
-/// One row a stage (or what `axis` says), one column a state.
+/// One row per stage (or per element of `axis`), one column per state.
 DatasetSpec by_state(const std::string& path, const std::string& axis, const ComparisonSizes& n,
                      const std::string& comment) {
   return {.path = path,
@@ -45,7 +45,7 @@ DatasetSpec by_state(const std::string& path, const std::string& axis, const Com
           .comment = comment};
 }
 
-/// Paths at the stages: stage, path, state.
+/// Paths at the stages, indexed by stage, path, state.
 DatasetSpec of_paths(const std::string& path, const ComparisonSizes& n,
                      const std::string& comment) {
   return {.path = path,
@@ -114,7 +114,7 @@ void add_closed_loop(Layout& layout, const std::string& group) {
   add("unsafe_periods", Type::kInt64, "periods", "that ended in the unsafe set");
 }
 
-/// The certificates of the closed loop, period by period.
+/// The period-by-period certificates of the closed loop.
 void add_next_step(Layout& layout, const std::string& group) {
   const auto add = [&](const char* name, Type type, const char* comment) {
     layout.push_back({.path = group + "/next_step/" + name,
@@ -200,7 +200,7 @@ void write_header(Hdf5File& file, const Comparison& comparison) {
   file.set_texts("/plants", "groups", plant_groups(comparison));
 }
 
-/// Stages as rows: path by path, its states one after the other.
+/// Writes each stage as a row: path by path, with the states of a path in sequence.
 void append_paths(Hdf5File& file, const std::string& path,
                   const std::vector<controller::Points>& stages) {
   for (const controller::Points& stage : stages) file.append(path, by_rows(stage.transpose()));
@@ -363,7 +363,7 @@ void write_comparison(const Comparison& comparison, const std::vector<TextFile>&
   for (const TextFile& file : more) files.add(file.path).write(file.text);
   files.add(folder + "/" + kComparisonNumbersFile).write(comparison_json(comparison));
   write_hdf5(comparison, data.partial_path());
-  // There is never a comparison.json of an older comparison beside a new comparison.h5.
+  // An old comparison.json must never stand beside a new comparison.h5.
   files.commit_sealed();
 }
 

@@ -132,7 +132,7 @@ std::string comparison_json(const Comparison& comparison) {
     json["plants"][plant.name] = plant_json(comparison, plant);
   }
   json["certificate"] = scope_json(why_no_bound(comparison.scenario));
-  json["certificate"]["along_plan"] = {{"holds", true}};  // there the policy sees the state
+  json["certificate"]["along_plan"] = {{"holds", true}};  // the policy observes the state there
   if (comparison.measured_error) json["model_error"] = error_json(comparison);
   return json_text(json);
 }

@@ -1,4 +1,4 @@
-// `comparison.json`: what programs read of a comparison. docs/compare.md describes its keys.
+// `comparison.json`: a comparison for other programs. docs/compare.md describes its keys.
 #pragma once
 
 #include <string>
@@ -7,8 +7,9 @@
 
 namespace qsmpc::harness {
 
-/// One object with stable keys, ending in a new line. Numbers that are not finite are null. Equal
-/// comparisons give equal bytes; of two of the same scenario and options, only `speed` differs.
+/// One object with stable keys, ending in a line feed. Numbers that are not finite are null. Equal
+/// comparisons give equal bytes; two comparisons of the same scenario and options differ in `speed`
+/// only.
 [[nodiscard]] std::string comparison_json(const Comparison& comparison);
 
 }  // namespace qsmpc::harness

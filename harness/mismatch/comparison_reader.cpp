@@ -1,4 +1,4 @@
-// read_comparison: the reading side of comparison_file.hpp.
+// read_comparison: reads what comparison_file.hpp writes.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -16,7 +16,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Of what an older file does not say.
+/// For values that an older file lacks.
 
 class ComparisonReader {
  public:
@@ -46,7 +46,7 @@ class ComparisonReader {
   [[nodiscard]] ResidualStatistics one_step(const std::string& group) const;
   [[nodiscard]] std::vector<HorizonStage> horizon(const std::string& group) const;
 
-  /// Refuses a dataset that has not `rows` rows.
+  /// Refuses a dataset unless it has `rows` rows.
   void expect_rows(const std::string& path, std::size_t rows) const {
     const std::size_t found = file_.shape(path).front();
     if (found != rows) refuse(path, std::to_string(found) + " rows", std::to_string(rows));
@@ -60,7 +60,7 @@ class ComparisonReader {
     expect_rows(path, rows);
     return file_.integers(path);
   }
-  /// A number a state.
+  /// One number per state.
   [[nodiscard]] Eigen::VectorXd by_state(const std::string& path) const {
     const std::vector<double> values = doubles(path, state_dim_);
     return Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
@@ -111,12 +111,12 @@ void ComparisonReader::read_header() {
   }
 }
 
-/// What older files may lack.
+/// Datasets that older files may lack.
 bool may_be_missing(const std::string& path) {
   return path == "/timing/speed" || path.find("/next_step/") != std::string::npos;
 }
 
-/// All but the number of rows.
+/// Checks everything except the number of rows.
 void ComparisonReader::check_datasets() const {
   for (const DatasetSpec& spec : comparison_layout(comparison_)) {
     if (may_be_missing(spec.path) && !file_.has_dataset(spec.path)) continue;
@@ -174,7 +174,7 @@ void ComparisonReader::read_episodes(const std::string& group, PlantComparison& 
   }
 }
 
-/// Of an older file, the sums that it has; the p-value is not known then.
+/// From an older file, the sums that it has; the p-value is then unknown.
 ClosedLoop ComparisonReader::closed_loop(const std::string& group,
                                          const std::vector<EpisodeResult>& episodes) const {
   ClosedLoop loop = closed_loop_of(episodes);

@@ -14,12 +14,12 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kNameWidth = 20;   // of plants and of rows
-constexpr std::size_t kStateWidth = 12;  // of what is said by state; six fit a line
+constexpr std::size_t kNameWidth = 20;   // of plant and row names
+constexpr std::size_t kStateWidth = 12;  // of columns by state; six fit a line
 constexpr std::size_t kStageWidth = 5;
 constexpr std::size_t kStageStateWidth = 9;
-constexpr std::size_t kNameLimit = 8;  // of a state among stages; a longer one is cut and marked
-constexpr double kSurprising = 0.01;   // a p-value below it is marked
+constexpr std::size_t kNameLimit = 8;  // of a state among stages; longer names are cut and marked
+constexpr double kSurprising = 0.01;   // p-values below it are marked
 
 std::string plant_name(const std::string& name) {
   return fmt::format("  {:<{}}", printable(name, kNameWidth - 3), kNameWidth - 2);
@@ -39,8 +39,8 @@ std::string by_state(const std::string& name, const Eigen::VectorXd& values,
   return row + "\n";
 }
 
-/// The head of what is certified for the drives. Along the plan the policy sees the state, and
-/// certificates are bounds in any case.
+/// The heading of the certificates of the drives. Along the plan the policy observes the state, so
+/// certificates are always bounds there.
 const char* certified_head(const Comparison& comparison) {
   return why_no_bound(comparison.scenario).empty() ? "certified" : "NO BOUND";
 }
@@ -77,8 +77,8 @@ std::string closed_loop_section(const Comparison& comparison) {
   return text;
 }
 
-/// Names and units of `states` in columns of `width`, after `left` characters; the names' line goes
-/// on with `right`.
+/// Names and units of `states` in columns of `width`, after `left` characters; `right` is appended
+/// to the line of names.
 std::string state_head(const std::vector<models::Coordinate>& states, std::size_t left,
                        std::size_t width, const std::string& right = "") {
   std::string names;
@@ -113,7 +113,7 @@ std::string one_step_section(const Comparison& comparison,
   return text;
 }
 
-/// Three states stand for all of them: the pose in the plane, else the first three.
+/// Up to three representative states: the pose in the plane, else the first three.
 std::vector<int> shown_states(const models::SystemDescription& system) {
   std::vector<int> shown;
   for (const int state : {system.position_x, system.position_y, system.heading}) {

@@ -1,4 +1,4 @@
-// A comparison for a terminal.
+// A comparison as text for a terminal.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace qsmpc::harness {
 
-/// Lines of at most 96 characters for states and plants of names that are not longer than usual.
+/// Lines of at most 96 characters, if the names of states and plants have a usual length.
 [[nodiscard]] std::string comparison_table(const Comparison& comparison);
 
 }  // namespace qsmpc::harness

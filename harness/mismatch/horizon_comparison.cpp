@@ -9,7 +9,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// The first `most` columns of `points` that are finite, each of the same weight.
+/// The first `most` finite columns of `points`, equally weighted.
 controller::DiscreteMeasure empirical_measure(const controller::Points& points, std::int64_t most) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < points.cols() && std::ssize(kept) < most; ++i) {
@@ -26,7 +26,7 @@ double w2_to(const controller::DiscreteMeasure& particles, const controller::Poi
   return measure.size() == 0 ? kNotANumber : controller::wasserstein2(particles, measure);
 }
 
-/// √ mean |column|² by row over the columns that are finite.
+/// √ mean |column|² by row, over the finite columns.
 Eigen::VectorXd rms_of_finite(const controller::Points& values) {
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(values.rows());
   double count = 0.0;
@@ -35,7 +35,7 @@ Eigen::VectorXd rms_of_finite(const controller::Points& values) {
     squares += column.cwiseAbs2();
     count += 1.0;
   }
-  return (squares / count).cwiseSqrt();  // 0/0 without any: not a number
+  return (squares / count).cwiseSqrt();  // without any column, 0/0: not a number
 }
 
 std::int64_t count_unsafe(const controller::Points& states, const controller::UnsafeSet& unsafe) {

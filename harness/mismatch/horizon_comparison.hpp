@@ -1,4 +1,4 @@
-// Where a plant is at the stages of a plan, beside where the planner's model and its particles say.
+// A plant's states at the stages of a plan, compared with the planner's model and its particles.
 #pragma once
 
 #include <cstdint>
@@ -14,30 +14,31 @@
 
 namespace qsmpc::harness {
 
-/// Probability with which either limit of an observed rate is wrong: together they are an interval
-/// of 99 %.
+/// Probability of error of either limit of an observed rate; both together form a 99 % interval.
 inline constexpr double kIntervalTail = 0.005;
 
-/// W2 between the particles of a stage and ensembles of the model's own paths: what W2 is where the
-/// plant is the model, for as many paths. It is not zero: particles are few, and so are paths.
+/// W2 between the particles of a stage and ensembles of the model's own paths: the reference value
+/// of W2 for a plant that equals the model, with as many paths. It is not zero, since the numbers
+/// of particles and paths are finite.
 struct W2Floor {
   double mean = 0.0;
   double deviation = 0.0;  ///< standard deviation over the ensembles
 };
 
-/// Ensembles of the model that a floor is the mean of.
+/// Number of ensembles of the model that a floor averages over.
 inline constexpr int kFloorEnsembles = 8;
 
-/// Most pairs of particles and paths that a distance is computed for: about 20 ms.
+/// Most pairs of particles and paths for computing a distance: about 20 ms.
 inline constexpr std::int64_t kPairsForW2 = 200'000;
 
-/// Of `paths`, how many enter a distance to the largest of `stages`: fewer where there are many
+/// The number of `paths` used for a distance to the largest of `stages`: fewer if there are many
 /// particles.
 [[nodiscard]] std::int64_t w2_paths(const std::vector<controller::DiscreteMeasure>& stages,
                                     std::int64_t paths);
 
-/// The floors of stages 0 … horizon, from kFloorEnsembles ensembles of `count` paths each, with the
-/// numbers that follow those of the first `paths` paths of `numbers`. Nothing depends on `run`.
+/// The floors of stages 0 … horizon, from kFloorEnsembles ensembles of `count` paths each, whose
+/// numbers follow those of the first `paths` paths of `numbers`. The result does not depend on
+/// `run`.
 struct FloorSettings {
   PathNumbers numbers;
   std::int64_t paths = 0;
@@ -56,24 +57,24 @@ struct HorizonStage {
   int stage = 0;
   Eigen::VectorXd divergence_rmse;  ///< √ mean (plant − model)², by state, path by path
   double w2 = 0.0;                  ///< between the particles and the plant's paths
-  Eigen::VectorXd residual_rmse;    ///< of the period that leads to this stage
-  std::int64_t unsafe = 0;          ///< paths whose plant is unsafe, or broken, at this stage
+  Eigen::VectorXd residual_rmse;    ///< of the period that ends at this stage
+  std::int64_t unsafe = 0;          ///< paths whose plant is unsafe, or has failed, at this stage
   RateInterval unsafe_limits;       ///< Clopper–Pearson, 99 %
 
-  /// √ Σ divergence_rmse²: at least W2 between the laws of plant and model, as far as the paths
-  /// tell, since paths with the same random numbers are a coupling of the two. 0 for the model
-  /// itself, where W2 between ensembles is not.
+  /// √ Σ divergence_rmse²: an estimate of an upper bound on W2 between the laws of plant and model,
+  /// since paths with the same random numbers are a coupling of the two. 0 for the model itself,
+  /// unlike W2 between ensembles.
   [[nodiscard]] double w2_to_model() const { return divergence_rmse.norm(); }
 };
 
 struct HorizonSettings {
-  std::int64_t w2_paths = 0;  ///< of the plant's paths, the first so many enter W2
+  std::int64_t w2_paths = 0;  ///< number of the plant's paths, from the first, that enter W2
 };
 
-/// Stages 1 … horizon. Paths whose plant broke are unsafe from then on, and have no part in
-/// divergence, residuals and W2; where none is left these are not a number. Nothing depends on
-/// `run`. stages: the particles of stages 0 … horizon; model: the states of `model_paths` of the
-/// same source.
+/// Stages 1 … horizon. Paths whose plant has failed count as unsafe from then on, and are excluded
+/// from divergence, residuals and W2, which are not a number where no path is left. The result does
+/// not depend on `run`. stages: the particles of stages 0 … horizon; model: the states of
+/// `model_paths` of the same source.
 [[nodiscard]] std::vector<HorizonStage> compare_along_horizon(
     const PlantPaths& plant, const std::vector<controller::Points>& model,
     const std::vector<controller::DiscreteMeasure>& stages, const controller::UnsafeSet& unsafe,

@@ -15,11 +15,12 @@ namespace {
 constexpr std::array<int, 3> kOrders = {2, controller::kHigherOrders[0],
                                         controller::kHigherOrders[1]};
 constexpr Eigen::Index kAll = std::numeric_limits<Eigen::Index>::max();  // columns
-// Random numbers of replicates are those of paths of such high numbers that there are none.
+// Replicates use the random numbers of path numbers that are too high to occur.
 constexpr std::uint64_t kFirstReplicate = std::uint64_t{1} << 63;
 
-/// Sums over the columns of a unit that a bootstrap needs: one row a unit, and one column a period
-/// (or one for all of them), coordinate and order; of powers of what the scale makes at most 1.
+/// Sums over the columns of a unit, as the bootstrap needs them: one row per unit, and one column
+/// per period (or one for all periods), coordinate and order. The powers are of values that `scale`
+/// brings to at most 1.
 struct PowerSums {
   Eigen::Index groups = 1;  // periods, or 1
   Eigen::Index dim = 0;
@@ -71,7 +72,7 @@ PowerSums power_sums(const ResidualSample& sample) {
   return powers;
 }
 
-/// How often each replicate draws each unit: replicates x units.
+/// The number of times that each replicate draws each unit: replicates x units.
 Eigen::MatrixXd draws(Eigen::Index units, std::uint64_t seed) {
   Eigen::MatrixXd times = Eigen::MatrixXd::Zero(kReplicates, units);
   for (int n = 0; n < kReplicates; ++n) {
@@ -88,7 +89,7 @@ Eigen::MatrixXd draws(Eigen::Index units, std::uint64_t seed) {
   return times;
 }
 
-/// The upper limit of a norm from that of the sample and those of the replicates.
+/// The upper limit of a norm, from the sample's norm and those of the replicates.
 double upper_limit(double norm, std::vector<double> replicates) {
   if (norm == 0.0) return 0.0;
   std::erase_if(replicates, [](double value) { return !(value > 0.0); });
@@ -150,7 +151,7 @@ void set_norms(controller::ModelError& error, const std::vector<ResidualSample>&
   for (const ResidualSample& sample : samples) {
     limits = limits.cwiseMax(norm_limits(sample, seed));
   }
-  // Norms grow with their order, limits of them only nearly.
+  // Norms increase with their order; their confidence limits do so only approximately.
   for (Eigen::Index p = 1; p < limits.cols(); ++p) {
     limits.col(p) = limits.col(p).cwiseMax(limits.col(p - 1));
   }
@@ -160,8 +161,8 @@ void set_norms(controller::ModelError& error, const std::vector<ResidualSample>&
   }
 }
 
-/// `count` columns of every unit from column `begin` on, as far as there are any; samples without
-/// any that is finite are left out.
+/// Up to `count` columns of every unit, from column `begin` on; samples without a finite column
+/// there are left out.
 std::vector<ResidualSample> columns_of(const std::vector<ResidualSample>& samples,
                                        Eigen::Index begin, Eigen::Index count) {
   std::vector<ResidualSample> parts;
@@ -178,7 +179,7 @@ std::vector<ResidualSample> columns_of(const std::vector<ResidualSample>& sample
   return parts;
 }
 
-/// What `samples`, all of one period, say of it.
+/// The model error of one period, to which all of `samples` belong.
 controller::ModelError period_error(std::vector<ResidualSample> samples, std::uint64_t seed) {
   controller::ModelError error;
   Eigen::Index fewest = std::numeric_limits<Eigen::Index>::max();

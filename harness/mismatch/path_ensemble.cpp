@@ -24,8 +24,8 @@ Eigen::VectorXd model_step(const models::Dynamics& model, const Eigen::VectorXd&
   return next.col(0);
 }
 
-/// Drives `plant`, nullptr for one that the simulator refuses, along one path, whose column of
-/// `paths` it fills; whether it came through.
+/// Drives `plant`, or nullptr for one that the simulator rejects, along one path and fills its
+/// column of `paths`. Returns whether the plant completed it.
 bool drive(Plant* plant, const models::Dynamics& model, const PathSource& source, std::int64_t path,
            PlantPaths& paths) {
   Eigen::VectorXd state = source.initial_state(path);

@@ -1,4 +1,4 @@
-// Plants that are used again: making one may mean to read and compile a MuJoCo model.
+// A pool of reusable plants: making one may require reading and compiling a MuJoCo model.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@
 
 namespace qsmpc::harness {
 
-/// Lends plants to threads: as many are made as are out at the same time at most, or, where every
-/// path has a vehicle of its own, one for each. They are to be reset by who takes them.
+/// Lends plants to threads. It makes as many as are lent at the same time or, if every path has its
+/// own vehicle, one per path. The borrower must reset them.
 class PlantPool {
  public:
   /// Makes the plant of a path.
   using Maker = std::function<std::unique_ptr<Plant>(std::int64_t)>;
 
-  /// make: called by several threads. A first plant is made at once, so that what is wrong with it
-  /// is thrown here, but where paths differ in their plants (differ): one of them says nothing of
+  /// make: called by several threads. A first plant is made immediately, so that its errors are
+  /// thrown here, unless plants differ between paths (differ): one of them then says nothing about
   /// the others.
   explicit PlantPool(Maker make, bool differ = false) : make_(std::move(make)), differ_(differ) {
     if (!differ_) idle_.push_back(make_(0));
   }
 
-  /// The plant of path `path`; nullptr where paths differ and the simulator refuses this one.
+  /// The plant of path `path`; nullptr where paths differ and the simulator rejects this one.
   [[nodiscard]] std::unique_ptr<Plant> take(std::int64_t path) {
     if (!differ_) {
       const std::lock_guard lock(mutex_);

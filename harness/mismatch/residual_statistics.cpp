@@ -10,7 +10,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Σ over the episodes of the products of residuals `lag` periods apart, and how many there are.
+/// Σ over the episodes of the products of residuals `lag` periods apart, and their number.
 struct LaggedProducts {
   Eigen::VectorXd sum;  // state_dim
   double pairs = 0.0;
@@ -45,7 +45,7 @@ Whiteness whiteness_of(const std::vector<Eigen::MatrixXd>& centred, Eigen::Index
   whiteness.ljung_box.setZero();
   for (int lag = 1; lag <= whiteness.lags; ++lag) {
     const LaggedProducts products = lagged_products(centred, dim, lag);
-    // 0/0 where a residual never changes: not a number, on purpose.
+    // 0/0 where a residual is constant: intentionally not a number.
     const Eigen::VectorXd correlation = products.sum.cwiseQuotient(squares.sum);
     whiteness.ljung_box += scale / products.pairs * correlation.cwiseAbs2();
     if (lag > 1) continue;
@@ -58,8 +58,8 @@ Whiteness whiteness_of(const std::vector<Eigen::MatrixXd>& centred, Eigen::Index
   return whiteness;
 }
 
-/// Standard error of the mean with episodes as the independent units: the residuals of one may
-/// depend on each other in any way.
+/// Standard error of the mean with episodes as the independent units: the residuals within an
+/// episode may be arbitrarily dependent.
 Eigen::VectorXd mean_deviation(const std::vector<Eigen::MatrixXd>& centred, Eigen::Index dim,
                                double periods) {
   const auto episodes = static_cast<double>(

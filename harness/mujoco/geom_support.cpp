@@ -12,7 +12,7 @@ Eigen::Vector3d triple_at(const double* values, int element) {
   return Eigen::Map<const Eigen::Vector3d>(values + std::ptrdiff_t{3} * element);
 }
 
-/// Of a mesh, in its own axes.
+/// Support of a mesh, in its own axes.
 double mesh_support(const mjModel& model, int mesh, const Eigen::Vector3d& direction) {
   double most = -kInfinity;
   for (int v = 0; v < model.mesh_vertnum[mesh]; ++v) {
@@ -22,7 +22,7 @@ double mesh_support(const mjModel& model, int mesh, const Eigen::Vector3d& direc
   return most;
 }
 
-/// Of a geom about its centre, in its own axes.
+/// Support of a geom about its centre, in its own axes.
 double shape_support(const mjModel& model, int geom, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d size = triple_at(model.geom_size, geom);
   const double across = direction.head<2>().norm();

@@ -18,20 +18,20 @@ namespace {
 
 using controller::PlanarShape;
 
-constexpr double kUpright = 1e-9;  // of an axis: what rotations that were printed lose
+constexpr double kUpright = 1e-9;  // of an axis: rounding of printed rotations
 constexpr double kOutward = 1e-9;  // of a size: more than the rounding of corners
 
 Eigen::Vector3d place_of(const double* values, int element) {
   return Eigen::Map<const Eigen::Vector3d>(values + std::ptrdiff_t{3} * element);
 }
 
-/// Where a geom is: its axes are the columns.
+/// The pose of a geom: its axes are the columns.
 struct GeomPose {
   Eigen::Vector3d centre;
   Eigen::Matrix3d axes;
   Eigen::Vector3d size;
 
-  /// The axis that is vertical, or -1.
+  /// The index of the vertical axis, or -1.
   [[nodiscard]] int upright() const {
     for (int i = 0; i < 3; ++i) {
       if (axes.col(i).head<2>().norm() <= kUpright) return i;
@@ -47,7 +47,7 @@ GeomPose pose_of(const mjModel& model, const mjData& data, int geom) {
           .size = place_of(model.geom_size, geom)};
 }
 
-/// Above 0 where the way from a over b to c turns left.
+/// Positive where the path from a over b to c turns left.
 double turn_at(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   return (b - a).x() * (c - b).y() - (b - a).y() * (c - b).x();
 }
@@ -66,7 +66,7 @@ std::vector<Eigen::Vector2d> hull_of(std::vector<Eigen::Vector2d> points) {
       }
       hull.push_back(point);
     }
-    hull.pop_back();  // where the next one begins
+    hull.pop_back();  // the next chain begins there
   };
   chain(points);
   std::ranges::reverse(points);
@@ -128,7 +128,7 @@ PlanarShape projected_box(const GeomPose& pose, const GeomSupport& support) {
   return projected_hull(corners, support);
 }
 
-/// The shadow of an ellipsoid is an ellipse: its matrix is the block of the ellipsoid's.
+/// The projection of an ellipsoid is an ellipse: its matrix is a block of the ellipsoid's matrix.
 PlanarShape projected_ellipsoid(const GeomPose& pose) {
   const Eigen::Matrix3d frame = pose.axes * pose.size.asDiagonal();
   const Eigen::Matrix2d block = (frame * frame.transpose()).topLeftCorner<2, 2>();
@@ -151,7 +151,7 @@ PlanarShape projected_mesh(const mjModel& model, int geom, const GeomPose& pose,
   return projected_hull(points, support);
 }
 
-/// A plane is unsafe behind itself.
+/// The half-space behind a plane is unsafe.
 void add_plane(GroundGeom& geom, const GeomPose& pose) {
   const Eigen::Vector3d normal = pose.axes.col(2);
   geom.lowest = -kInfinity;
@@ -189,7 +189,7 @@ std::optional<PlanarShape> projection_of(const mjModel& model, int geom, const G
   }
 }
 
-/// Whether a joint or a mocap body carries the body.
+/// Whether a joint or a mocap body carries the body, directly or indirectly.
 bool moves(const mjModel& model, int body) {
   for (; body > 0; body = model.body_parentid[body]) {
     if (model.body_jntnum[body] > 0 || model.body_mocapid[body] >= 0) return true;

@@ -9,7 +9,7 @@ namespace {
 
 thread_local MujocoTrap* innermost = nullptr;
 
-// A handler that returned would let MuJoCo go on to exit().
+// If a handler returned, MuJoCo would call exit().
 void throw_error(const char* text) { throw MujocoError(text); }
 
 }  // namespace
@@ -19,7 +19,7 @@ void MujocoTrap::collect(const char* text) {
 }
 
 MujocoTrap::MujocoTrap() : outer_(innermost) {
-  // Once in a process: MuJoCo reads the pointers without a lock, so that they must not change while
+  // Once per process: MuJoCo reads the pointers without a lock, so they must not change while
   // another thread simulates.
   static std::once_flag installed;
   std::call_once(installed, [] {

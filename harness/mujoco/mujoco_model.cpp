@@ -26,8 +26,8 @@ std::string expected_model() {
   return fmt::format("a model (MJCF) that MuJoCo {} loads without a warning", mujoco_version());
 }
 
-// MuJoCo writes "line 4", "line = 4" or "Line number=4"; its parser says 0 where it knows none, and
-// the line of an include then comes after it.
+// MuJoCo writes "line 4", "line = 4" or "Line number=4"; its parser reports 0 if the line is
+// unknown, in which case the line of an include follows.
 int line_in(const std::string& text) {
   static const std::regex pattern("[Ll]ine(?: number)?(?: |=| = )([0-9]{1,8})");
   for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match) {
@@ -47,15 +47,15 @@ SimulatorError model_error(const std::string& path, std::string text) {
 
 struct XmlSource {
   std::string file;
-  const mjVFS* files;  // in memory; nullptr: on the disk
+  const mjVFS* files;  // in memory; nullptr: files on disk
 };
 
-/// `path`: what errors name.
+/// `path`: the file name in errors.
 MujocoModelPtr load_xml(const std::string& path, const XmlSource& source) {
   if (!std::ifstream(path).good()) {
     throw InputError({.file = path, .found = "no readable file", .expected = expected_model()});
   }
-  // The loader calls srand(), which is not safe on several threads.
+  // The loader calls srand(), which is not thread-safe.
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   const MujocoTrap trap;
@@ -67,7 +67,7 @@ MujocoModelPtr load_xml(const std::string& path, const XmlSource& source) {
   } catch (const MujocoError& error) {
     throw model_error(path, error.what());
   }
-  // The first warning is the cause; the text may tell only what followed from it.
+  // The first warning is the cause; the error text may only report a consequence.
   if (model != nullptr && !trap.warnings().empty()) {
     throw model_error(path, trap.warnings().front());
   }
@@ -85,7 +85,7 @@ MujocoModelPtr load_mujoco_model(const std::string& path) {
 
 MujocoModelPtr load_mujoco_model_with(const std::string& path, const std::string& more) {
   namespace fs = std::filesystem;
-  // In the file's own folder, from which MuJoCo takes the paths in it, but in memory.
+  // In memory, but with the file's own folder, against which MuJoCo resolves the paths in it.
   const std::string file = (fs::path(path).parent_path() / kExtendedModel).string();
   const std::string text = fmt::format("<mujoco>\n<include file=\"{}\"/>\n{}</mujoco>\n",
                                        fs::path(path).filename().string(), more);
@@ -110,7 +110,7 @@ std::string mujoco_model_digest(const std::string& path) {
   const MujocoModelPtr model = load_mujoco_model(path);
   std::vector<unsigned char> bytes(static_cast<std::size_t>(mj_sizeModel(model.get())));
   mj_saveModel(model.get(), nullptr, bytes.data(), static_cast<int>(bytes.size()));
-  // CRC-64 of ECMA-182, as xz has it.
+  // CRC-64 of ECMA-182, in the variant of xz.
   boost::crc_optimal<64, 0x42F0E1EBA9EA3693, ~0ULL, ~0ULL, true, true> crc;
   crc.process_bytes(bytes.data(), bytes.size());
   return fmt::format("{:016x}", crc.checksum());

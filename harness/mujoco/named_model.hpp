@@ -1,5 +1,5 @@
-// Elements of a loaded MuJoCo model by name, and geometry that the low-level loops take from it.
-// For sources that work on MuJoCo models: it shows MuJoCo's types, as few headers here do.
+// Lookup of MuJoCo model elements by name, and the geometry that the low-level loops need. For
+// sources that work on MuJoCo models: unlike most headers here, it exposes MuJoCo's types.
 #pragma once
 
 #include <string>
@@ -9,20 +9,20 @@
 
 namespace qsmpc::harness {
 
-/// A model and what errors about it name.
+/// A model and its file name for errors.
 struct NamedModel {
   const mjModel& model;
   std::string file;
 };
 
-/// Index of the element of `type` called `name`. Throws InputError that lists those which exist.
+/// Index of the element of `type` called `name`. Throws InputError, listing the existing ones.
 [[nodiscard]] int element_index(const NamedModel& named, mjtObj type, const std::string& name);
 
-/// Index of the slide or hinge joint called `name`. Throws InputError on another one.
+/// Index of the slide or hinge joint called `name`. Throws InputError on any other joint.
 [[nodiscard]] int scalar_joint(const NamedModel& named, const std::string& name);
 
 /// Radius (m) of the wheel that spins about `joint`: that of the largest round geom of its body and
-/// of those fixed to it. Throws InputError where there is none.
+/// of the bodies fixed to it. Throws InputError where there is none.
 [[nodiscard]] double wheel_radius(const NamedModel& named, int joint);
 
 /// Orientation of a body in the world. data: with positions up to date.

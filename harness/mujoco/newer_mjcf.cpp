@@ -12,8 +12,8 @@ namespace {
 
 struct NewerName {
   std::string_view name;
-  std::string_view version;  ///< that brought it
-  std::string_view instead;  ///< what to write
+  std::string_view version;  ///< that introduced it
+  std::string_view instead;  ///< the replacement
 };
 
 constexpr std::string_view kLeftOut = "leave it out";
@@ -119,7 +119,7 @@ std::string newer_mjcf_hint(const std::string& complaint) {
         hint_in(kElements, complaint, R"(unrecognized element\s+Element '([^']*)')")}) {
     if (!hint.empty()) return hint;
   }
-  // MuJoCo's own words already say what to write.
+  // MuJoCo's own message already states the replacement.
   if (std::regex_search(complaint, std::regex("has `\\w+` but not `\\w+`"))) {
     return fmt::format(
         "a model for MuJoCo {}: a range limits without more only since 3.0.0; write <compiler "

@@ -20,7 +20,8 @@ namespace {
 
 constexpr int kDirections = 360;
 constexpr double kAngleStep = 2.0 * std::numbers::pi / kDirections;
-// Of the rectangle's sides: more than what steps of a degree miss of an arc, 4e-5 of its radius.
+// Relative to the rectangle's sides: covers the error of one-degree steps on an arc, 4e-5 of its
+// radius.
 constexpr double kSweepMargin = 1e-4;
 constexpr double kMillimetres = 1e3;  // in a metre
 constexpr double kAligned = 1e-6;     // of an axis
@@ -36,7 +37,7 @@ struct TurningAxis {
   Eigen::Vector3d axis;
 };
 
-/// The cylinder about `turning` in which the set stays, however far it turns.
+/// The cylinder about `turning` that contains the set for all angles.
 Support turned_all_round(const Support& support, const TurningAxis& turning) {
   const Eigen::Vector3d anchor = turning.anchor;
   const Eigen::Vector3d axis = turning.axis;
@@ -48,7 +49,7 @@ Support turned_all_round(const Support& support, const TurningAxis& turning) {
     const Eigen::Vector3d direction = Eigen::AngleAxisd(k * kAngleStep, axis) * start;
     radius = std::max(radius, support(direction) - direction.dot(anchor));
   }
-  radius /= std::cos(0.5 * kAngleStep);  // the farthest point is between two directions
+  radius /= std::cos(0.5 * kAngleStep);  // the farthest point may lie between two directions
   return [=](const Eigen::Vector3d& direction) {
     const double along = direction.dot(axis);
     return direction.dot(anchor) + std::max(along * highest, along * lowest) +
@@ -70,7 +71,7 @@ Support turned_within(const Support& support, const TurningAxis& turning, double
   };
 }
 
-/// The ball about the anchor that holds the set's box about it.
+/// The ball about the anchor that contains the set's bounding box.
 Support turned_anyhow(const Support& support, const Eigen::Vector3d& anchor) {
   Eigen::Vector3d reach;
   for (int i = 0; i < 3; ++i) {
@@ -83,7 +84,7 @@ Support turned_anyhow(const Support& support, const Eigen::Vector3d& anchor) {
   };
 }
 
-/// Adds to a part's support what its joints let it reach.
+/// Extends a part's support by the motion of its joints.
 class Sweep {
  public:
   Sweep(const NamedModel& named, const mjData& data) : named_(named), data_(data) {}
@@ -98,7 +99,7 @@ class Sweep {
   }
 
  private:
-  /// Between the body and the carrier, whose own are not among them; the innermost first.
+  /// The joints between the body and the carrier, without the carrier's own; the innermost first.
   [[nodiscard]] std::vector<int> joints(int body, int carrier) const {
     std::vector<int> found;
     for (; body != carrier; body = named_.model.body_parentid[body]) {
@@ -163,7 +164,7 @@ int body_of(const NamedModel& named, const VehicleElement& element) {
   return named.model.jnt_bodyid[scalar_joint(named, element.name)];
 }
 
-/// The body of `element`, which if it is a joint is one of the given type along `axis`.
+/// The body of `element`; if it is a joint, the joint must be of the given type, along `axis`.
 int checked_body(const NamedModel& named, const mjData& data, const VehicleElement& element,
                  mjtJoint type, const Eigen::Vector3d& axis) {
   const int body = body_of(named, element);
@@ -178,7 +179,7 @@ int checked_body(const NamedModel& named, const mjData& data, const VehicleEleme
                                                     : "a slide along the world's axis"});
 }
 
-/// What the system calls the heading at the reference pose, rad.
+/// The heading, as the system defines it, at the reference pose, rad.
 double heading_of(const NamedModel& named, const mjData& data, const VehicleHeading& heading) {
   const VehicleElement& element = heading.element;
   const int body = checked_body(named, data, element, mjJNT_HINGE, Eigen::Vector3d::UnitZ());
@@ -225,7 +226,7 @@ VehicleOutline outline_of(const NamedModel& named, const mjData& data, const Veh
   }
   const double margin =
       kSweepMargin * std::max(outline.front - outline.rear, outline.left - outline.right);
-  // To whole millimetres, which is more than the rounding of a mesh's vertices.
+  // Rounded outwards to whole millimetres, which exceeds the rounding of a mesh's vertices.
   const auto below = [&](double side) {
     return std::floor((side - margin) * kMillimetres) / kMillimetres;
   };

@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr int kLastVisibleGroup = 2;  // of those that mjvOption draws unless told otherwise
+constexpr int kLastVisibleGroup = 2;  // of the groups that mjvOption shows by default
 constexpr double kAlongAxis = 1e-6;   // of an axis
 constexpr std::array<float, 4> kColourOfNone{0.5F, 0.5F, 0.5F, 1.0F};
 
@@ -38,13 +38,13 @@ Placement geom_place(const mjModel& model, const mjData& data, int geom) {
   return {three_at(data.geom_xpos, geom), body.rotation * four_at(model.geom_quat, geom)};
 }
 
-/// `inner`, which is in the world, in the axes of `outer`.
+/// The pose `inner`, given in the world, relative to `outer`.
 Placement seen_from(const Placement& outer, const Placement& inner) {
   const Eigen::Quaterniond back = outer.rotation.conjugate();
   return {back * (inner.position - outer.position), (back * inner.rotation).normalized()};
 }
 
-/// As MuJoCo draws it: a material's colour, unless the geom has one itself.
+/// As MuJoCo draws it: the material's colour, unless the geom has its own.
 std::array<double, 4> colour_of(const mjModel& model, int geom) {
   const float* own = model.geom_rgba + std::ptrdiff_t{4} * geom;
   const int material = model.geom_matid[geom];
@@ -83,7 +83,7 @@ void set_at_origin(const mjModel& model, double* qpos) {
   }
 }
 
-/// The box about a mesh instead of it.
+/// Replaces a mesh by its bounding box.
 void make_box(VehicleShape& shape, const VehicleMesh& mesh) {
   const Eigen::Map<const Eigen::Matrix3Xd> vertices(
       mesh.vertices.data(), 3, static_cast<Eigen::Index>(mesh.vertices.size() / 3));
@@ -121,7 +121,7 @@ std::size_t VehicleShapes::coordinate_count() const {
   return static_cast<std::size_t>(simulator_->model->nq);
 }
 
-/// Of the body that `body` is fixed to, which is a new part if no shape was before it.
+/// The part of `body`, by way of the body that it is fixed to; created with its first shape.
 int VehicleShapes::part_of(int body) {
   const int carrier = simulator_->model->body_weldid[body];
   if (carrier == 0) return VehicleShape::kWorld;
@@ -180,7 +180,7 @@ void VehicleShapes::add_mesh(VehicleShape& shape, int mesh) {
   add_triangles(shape, mesh, std::move(triangles));
 }
 
-/// Its upper side.
+/// Adds the upper surface of a height field.
 void VehicleShapes::add_height_field(VehicleShape& shape, int field) {
   const mjModel& model = *simulator_->model;
   const double* size = model.hfield_size + std::ptrdiff_t{4} * field;

@@ -1,5 +1,5 @@
-// The visible shapes of a MuJoCo model, and where its moving parts are: plain values for a drawing
-// that is made elsewhere.
+// The visible shapes of a MuJoCo model and the poses of its moving parts, as plain values for
+// rendering elsewhere.
 //
 //   VehicleShapes vehicle("dubins_car.xml");
 //   vehicle.shapes();                      // once
@@ -27,7 +27,7 @@ enum class ShapeKind {
   kMesh        ///< triangles
 };
 
-/// A position (m) and an orientation in some frame.
+/// A position (m) and an orientation, in some frame.
 struct Placement {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -37,27 +37,27 @@ struct VehicleShape {
   static constexpr int kWorld = -1;
 
   ShapeKind kind = ShapeKind::kBox;
-  int part = kWorld;  ///< that it is fixed to: kWorld, or an index of the moving parts
-  int mesh = -1;      ///< of kMesh: an index of the meshes
+  int part = kWorld;  ///< that it is fixed to: kWorld, or the index of a moving part
+  int mesh = -1;      ///< of kMesh: its index among the meshes
   std::array<double, 3> size{};
   Placement place{};  ///< in the axes of its part
   std::array<double, 4> rgba{};
 };
 
 struct VehicleMesh {
-  std::vector<double> vertices;          ///< m, three a vertex, in the axes of the shape
+  std::vector<double> vertices;          ///< m, three per vertex, in the axes of the shape
   std::vector<std::uint32_t> triangles;  ///< three vertices each, anticlockwise from outside
 };
 
 class VehicleShapes {
  public:
-  /// Of all meshes and height fields of a model together, and of one. What is larger is a box.
+  /// Limit for all meshes and height fields of a model together, and for each. Larger ones become
+  /// boxes.
   static constexpr std::size_t kMostTriangles = 30'000;
   static constexpr std::size_t kMostVertices = 65'535;
 
-  /// Loads the MJCF file `path`. Visible is what MuJoCo shows unless told otherwise (groups 0 to
-  /// 2), without planes and what is transparent altogether. Throws InputError as
-  /// load_mujoco_model.
+  /// Loads the MJCF file `path`. Visible geoms are those that MuJoCo shows by default (groups 0 to
+  /// 2), without planes and fully transparent geoms. Throws InputError as load_mujoco_model.
   explicit VehicleShapes(const std::string& path);
   ~VehicleShapes();
   VehicleShapes(const VehicleShapes&) = delete;
@@ -65,21 +65,21 @@ class VehicleShapes {
 
   [[nodiscard]] const std::vector<VehicleShape>& shapes() const { return shapes_; }
   [[nodiscard]] const std::vector<VehicleMesh>& meshes() const { return meshes_; }
-  /// How many shapes are boxes about a mesh or a height field with too many triangles.
+  /// The number of meshes and height fields with too many triangles, which are boxes instead.
   [[nodiscard]] int boxed() const { return boxed_; }
 
-  /// How many parts move. Bodies without joints between them are one.
+  /// The number of moving parts. Bodies without joints between them are one part.
   [[nodiscard]] std::size_t part_count() const { return bodies_.size(); }
-  /// How many values `qpos` has.
+  /// The size of `qpos`.
   [[nodiscard]] std::size_t coordinate_count() const;
 
-  /// Where the moving parts are in the world. Throws std::invalid_argument unless `qpos` has
+  /// The poses of the moving parts in the world. Throws std::invalid_argument unless `qpos` has
   /// coordinate_count() finite values.
   [[nodiscard]] std::vector<Placement> parts(std::span<const double> qpos);
 
-  /// The same with the vehicle at the origin, heading along x: the first free joint there (without
-  /// one: the first joints that slide along x and y and turn about z), all others where the model
-  /// has them.
+  /// The same with the vehicle at the origin, heading along x: the first free joint is placed there
+  /// (without one: the first joints that slide along x and y and turn about z), all other joints
+  /// are at the model's reference pose.
   [[nodiscard]] std::vector<Placement> parts_at_origin();
 
  private:
@@ -94,7 +94,7 @@ class VehicleShapes {
   std::unique_ptr<Simulator> simulator_;
   std::vector<VehicleShape> shapes_;
   std::vector<VehicleMesh> meshes_;
-  std::vector<int> mesh_sources_;  // MuJoCo's index of each; of height fields negative
+  std::vector<int> mesh_sources_;  // MuJoCo's index of each; negative for height fields
   std::vector<int> bodies_;        // of each part
   std::size_t triangles_ = 0;
   int boxed_ = 0;

@@ -16,12 +16,12 @@ std::string with_place(const InputError::Where& where) {
   return InputError(told).what();
 }
 
-/// The scenario's key that `where`, an error of its MuJoCo file, is about.
+/// The key of the scenario that corresponds to `where`, an error in its MuJoCo file.
 InputError::Where scenario_place(const InputError::Where& where, const Scenario& scenario,
                                  const std::string& path_or_name,
                                  const std::vector<std::string>& overrides) {
   if (!scenario.plant.mapping) return place_of_key(path_or_name, overrides, "plant.mjcf");
-  // "joint NAME": what the mapping names and the model does not have.
+  // "joint NAME": an element that the mapping names and the model does not have.
   if (const std::size_t space = where.key.find(' '); space != std::string::npos) {
     const auto place = place_of_element(path_or_name, overrides, where.key.substr(0, space),
                                         where.key.substr(space + 1));
@@ -42,10 +42,10 @@ void try_driven_plant(const Scenario& scenario) {
   (void)make_plant(scenario);
   if (!varies(scenario.disturbance)) return;
   try {
-    // Refuses a variation that the plant has nothing for; any seed does.
+    // Rejects a variation that the plant does not support; any seed will do.
     (void)make_plant(scenario, draw_variation(scenario.disturbance, scenario.seed));
   } catch (const SimulatorError&) {
-    // One vehicle of many that cannot be simulated is an episode's fault, no wrong file.
+    // If a drawn vehicle cannot be simulated, that is a fault of its episode, not an invalid file.
   }
 }
 
@@ -62,7 +62,7 @@ std::optional<InputError::Where> plant_problem(const Scenario& scenario,
     return std::nullopt;
   } catch (const InputError& error) {
     const InputError::Where& where = error.where();
-    const bool is_of_scenario = where.file.empty();  // a key of it that the plant does not offer
+    const bool is_of_scenario = where.file.empty();  // a key that the plant does not support
     InputError::Where told = is_of_scenario
                                  ? place_of_key(path_or_name, overrides, where.key)
                                  : scenario_place(where, scenario, path_or_name, overrides);

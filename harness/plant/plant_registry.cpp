@@ -18,7 +18,7 @@ struct PlantMaker {
   std::function<std::unique_ptr<Plant>(const Scenario&, const PlantVariation&)> make;
 };
 
-/// Multiplies those of `names` among the parameters; refuses a factor that changes none.
+/// Multiplies the parameters that `names` lists; rejects a factor that would change none.
 void vary(models::ParameterMap& parameters, const char* what, double factor,
           std::initializer_list<const char*> names) {
   if (factor == 1.0) return;

@@ -1,4 +1,4 @@
-// The table of plants that a scenario may name.
+// The table of available plants.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace qsmpc::harness {
 
-/// What `qsmpc list plants` prints.
+/// An entry of `qsmpc list plants`.
 struct PlantEntry {
   std::string name;
   std::string summary;  ///< one line
@@ -21,13 +21,13 @@ struct PlantEntry {
 
 /// The plant that `scenario.plant` names, for the scenario's system, control period and kind of
 /// disturbance. Throws InputError on an unknown kind, on a kind of disturbance or a variation that
-/// the plant does not offer, and whatever the plant's own maker throws: see make_mujoco_plant and
+/// the plant does not support, and as the plant's own maker: see make_mujoco_plant and
 /// make_dynamics.
 [[nodiscard]] std::unique_ptr<Plant> make_plant(const Scenario& scenario,
                                                 const PlantVariation& variation = {});
 
-/// What a plant's own files come down to: `mujoco_model_digest` of its vehicle; empty for a plant
-/// without files. Throws as it does.
+/// The digest of a plant's files: `mujoco_model_digest` of its vehicle; empty for a plant without
+/// files. Throws as mujoco_model_digest.
 [[nodiscard]] std::string plant_digest(const Scenario& scenario);
 
 }  // namespace qsmpc::harness

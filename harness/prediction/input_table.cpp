@@ -144,7 +144,7 @@ class TableReader {
   std::string file_;
   const InputTableFormat& format_;
   std::vector<std::string> names_;
-  std::vector<std::size_t> order_;  // input of each column
+  std::vector<std::size_t> order_;  // input index of each column
   int line_ = 0;
   std::vector<Eigen::VectorXd> rows_;
 };

@@ -1,4 +1,4 @@
-// Inputs along a horizon from a CSV file: one row a stage, one column an input.
+// Inputs along a horizon from a CSV file: one row per stage, one column per input.
 //
 //   yaw_rate        a first line that names the inputs may be there, in any order;
 //   0.3             then one line a stage.
@@ -15,20 +15,20 @@
 
 namespace qsmpc::harness {
 
-/// What the file has to fit to.
+/// What the file has to match.
 struct InputTableFormat {
   std::vector<models::Coordinate> inputs;  ///< one column each
-  controller::InputBounds bounds;          ///< every number lies within
-  std::optional<int> stages{};  ///< how many rows are read, of which there are at least as many
+  controller::InputBounds bounds;          ///< which every number must satisfy
+  std::optional<int> stages{};  ///< number of rows to read; the file has at least as many
 };
 
 /// The inputs in the file at `path` (input_dim x rows). Throws InputError with file, line, column,
-/// what was found and what is expected, on whatever is no such table; a number outside the bounds
-/// is refused as well, since certificates hold for inputs that are applied as they are.
+/// what was found and what is expected, if the file is not such a table. Numbers outside the bounds
+/// are also refused, since certificates hold for inputs that are applied unchanged.
 [[nodiscard]] Eigen::MatrixXd read_input_table(const std::string& path,
                                                const InputTableFormat& format);
 
-/// As `read_input_table`, from the text itself; `file` is what errors call it.
+/// As `read_input_table`, from the text itself; `file` is its name in errors.
 [[nodiscard]] Eigen::MatrixXd parse_input_table(const std::string& text, const std::string& file,
                                                 const InputTableFormat& format);
 

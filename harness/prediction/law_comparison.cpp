@@ -19,7 +19,7 @@ namespace {
 
 using Laws = std::vector<controller::StageLaw>;
 
-// Any number; the draws of a law have nothing to do with the paths.
+// Arbitrary: the draws of a law are independent of the paths.
 constexpr std::uint64_t kDrawSeed = 1;
 
 controller::DiscreteMeasure uniform_points(const controller::Points& points) {
@@ -28,7 +28,7 @@ controller::DiscreteMeasure uniform_points(const controller::Points& points) {
               Eigen::VectorXd::Constant(points.cols(), 1.0 / static_cast<double>(points.cols()))};
 }
 
-/// Compares the laws of all methods, stage by stage; stages are shared out among threads.
+/// Compares the laws of all methods, stage by stage; the stages are distributed among threads.
 class LawJudge {
  public:
   LawJudge(const controller::SafeSet& safe_set, const PathLaws& truth)
@@ -76,7 +76,7 @@ class LawJudge {
     return uniform_points(truth_.paths[stage - 1].leftCols(kTransportPaths));
   }
 
-  /// Points as they are, where there are not too many of them; otherwise draws.
+  /// A law's points unchanged, unless there are too many of them; otherwise draws.
   [[nodiscard]] controller::DiscreteMeasure as_points(const controller::StageLaw& law) const {
     const auto* points = std::get_if<controller::DiscreteMeasure>(&law);
     if (points != nullptr && points->size() <= kTransportPaths) return *points;
@@ -89,7 +89,7 @@ class LawJudge {
   controller::StandardDraws probability_draws_;
 };
 
-/// The laws of one method, and how long they take.
+/// Computes and times the laws of one method.
 Laws timed_laws(const std::string& name, const controller::LawProblem& problem,
                 const controller::LawSettings& settings, MethodErrors& method) {
   using Clock = std::chrono::steady_clock;
@@ -133,7 +133,7 @@ std::optional<LawComparison> compare_laws(const controller::PredictedMotion& mot
   }
   comparison.floors.resize(horizon);
   const LawJudge judge(safe_set, paths);
-  // One piece of work for every stage of every method, and one more a stage for its floor.
+  // One piece of work per stage and method, and one more per stage for its floor.
   const std::size_t columns = laws.size() + 1;
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> given_up = false;

@@ -1,4 +1,4 @@
-// The errors of methods of prediction as a table for a terminal of 80 columns.
+// The errors of prediction methods as a table for a terminal of 80 columns.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace qsmpc::harness {
 
-/// For each of these stages (1 … horizon; none: the last) one row a method: errors of W2, mean and
-/// covariance, the probability of being unsafe that it says, and its time; before them what
-/// sampling alone gives and the simulated rate. Empty where the report has no comparison.
+/// For each of `stages` (1 … horizon; empty: the last), one row per method: errors in W2, mean and
+/// covariance, its probability of being unsafe, and its time; above them, the errors due to
+/// sampling alone and the simulated rate. Empty if the report has no comparison.
 [[nodiscard]] std::string law_table(const PredictionReport& report, const std::vector<int>& stages);
 
 }  // namespace qsmpc::harness

@@ -13,14 +13,14 @@
 namespace qsmpc::harness {
 namespace {
 
-// Paths that are simulated together: enough to keep the dynamics' loops long, few enough for the
-// cache and for an answer to Ctrl-C.
+// Paths that are simulated together: enough for long loops in the dynamics, few enough for the
+// cache and for a prompt response to Ctrl-C.
 constexpr std::int64_t kBatch = 1024;
 
-/// Simulates batches of paths; the batches are shared out among threads.
+/// Simulates batches of paths; the batches are distributed among threads.
 class PathSimulation {
  public:
-  /// collector: told of every batch, where there is one.
+  /// collector: receives every batch; may be null.
   PathSimulation(const controller::PredictedMotion& motion, const controller::SafeSet& safe_set,
                  const MonteCarloOptions& options, PathCollector* collector)
       : motion_(motion),
@@ -30,7 +30,8 @@ class PathSimulation {
         initial_(motion.belief.mean, motion.belief.covariance),
         noise_(Eigen::VectorXd::Zero(motion.belief.mean.size()), motion.noise_covariance) {}
 
-  /// Takes batches until none is left or the work is given up. report: whether to tell progress.
+  /// Takes batches until none are left or the work is abandoned. report: whether to report
+  /// progress.
   UnsafeCounts work(bool report) {
     UnsafeCounts counts;
     counts.stages.assign(static_cast<std::size_t>(motion_.policy.horizon()), 0);
@@ -122,7 +123,7 @@ std::optional<UnsafeCounts> run_simulation(const controller::PredictedMotion& mo
   if (simulation.stopped()) return std::nullopt;
   UnsafeCounts total = std::move(counts.front());
   for (std::size_t n = 1; n < counts.size(); ++n) add_to(total, counts[n]);
-  // The last batch may have been another thread's.
+  // The last batch may have been finished by another thread.
   if (options.on_progress) options.on_progress(total.samples, options.samples);
   return total;
 }

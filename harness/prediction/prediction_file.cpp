@@ -237,7 +237,7 @@ void write_prediction(const PredictionReport& report, const std::string& folder)
   files.add(folder + "/" + kScenarioFile).write(report.scenario_text);
   files.add(folder + "/" + kPredictionNumbersFile).write(prediction_json(report));
   write_hdf5(report, measures.partial_path());
-  // There is never a predict.json of an older prediction beside a new predict.h5.
+  // Ensures that an older predict.json never stands beside a new predict.h5.
   files.commit_sealed();
 }
 

@@ -1,4 +1,4 @@
-// The files that a prediction leaves: predict.h5, predict.json and scenario.yaml.
+// The files of a prediction: predict.h5, predict.json and scenario.yaml.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@ namespace qsmpc::harness {
 inline constexpr const char* kPredictionFile = "predict.h5";
 inline constexpr const char* kPredictionNumbersFile = "predict.json";
 
-/// Grows with every change that an older reader would misread.
+/// Incremented by every change that an older reader would misread.
 inline constexpr std::int64_t kPredictionSchema = 1;
 
 /// The datasets of predict.h5. docs/predict.md describes them.
 [[nodiscard]] std::vector<DatasetSpec> prediction_layout(const PredictionReport& report);
 
-/// Writes the three files into `folder`, which exists. All of them are written aside before the
-/// first gets its name, and predict.json gets it last: where that is, the other two belong to it.
-/// Throws IoError; what stood under the names before is then there still, or is gone as well.
+/// Writes the three files into the existing folder `folder`. All are fully written before the first
+/// gets its final name, and predict.json gets its name last: if it exists, the other two match it.
+/// Throws IoError; each file that existed before is then either unchanged or gone.
 void write_prediction(const PredictionReport& report, const std::string& folder);
 
 }  // namespace qsmpc::harness

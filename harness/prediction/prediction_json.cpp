@@ -90,7 +90,7 @@ Json methods_json(const LawComparison& laws) {
 std::string prediction_json(const PredictionReport& report) {
   Json json;
   json["inputs"] = rows_json(report.policy.inputs.transpose());
-  json["cost"] = report.cost.total();  // null where the controller knows none
+  json["cost"] = report.cost.total();  // null if the controller has none
   json["stages"] = Json::array();
   for (std::size_t stage = 1; stage < report.prediction.stages.size(); ++stage) {
     json["stages"].push_back(stage_json(report, stage));

@@ -1,4 +1,4 @@
-// `predict.json`: what programs read of a prediction. docs/predict.md describes its keys.
+// `predict.json`: the machine-readable result of a prediction. docs/predict.md describes its keys.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace qsmpc::harness {
 
-/// One object with stable keys, ending in a new line. Numbers that are not finite are null. Equal
-/// reports give equal bytes.
+/// One object with stable keys, ending in a newline. Non-finite numbers are null. Equal reports
+/// give equal bytes.
 [[nodiscard]] std::string prediction_json(const PredictionReport& report);
 
 }  // namespace qsmpc::harness

@@ -49,14 +49,14 @@ void simulate_and_compare(const controller::PredictedMotion& motion,
   report.interrupted = !report.laws;
 }
 
-/// Certifies the motion, and simulates it where that is wanted.
+/// Certifies the motion, and simulates it if requested.
 void judge(const controller::PredictedMotion& motion, const PredictionOptions& options,
            PredictionReport& report) {
   const Scenario& scenario = report.scenario;
   report.policy = motion.policy;
   report.prediction = controller::without_shares(motion.prediction);
   report.budgets = controller::error_budget(motion);
-  // All bounds are reported, so each is to be as good as it gets.
+  // All bounds are reported, so each is made as tight as possible.
   report.certificates = controller::certify(motion, scenario.safe_set, report.budgets,
                                             controller::CertificateEffort::kEvery);
   report.horizon_bound = controller::horizon_bound(report.certificates);
@@ -107,7 +107,7 @@ std::vector<int> contradicted_stages(const PredictionReport& report) {
   const UnsafeCounts& counts = *report.monte_carlo;
   for (std::size_t k = 0; k < report.certificates.size(); ++k) {
     const SimulatedRate simulated = simulated_rate(counts.stages[k], counts.samples);
-    // Written so that a certificate that is not a number is one that does not hold.
+    // Negated so that a NaN certificate counts as contradicted.
     if (!(report.certificates[k].value >= simulated.limits.lower)) {
       stages.push_back(static_cast<int>(k) + 1);
     }

@@ -1,5 +1,5 @@
-// What `qsmpc predict` computes: the plan from a scenario's initial belief, the measures along its
-// horizon, their error and their certificates. No plant is involved.
+// The result of `qsmpc predict`: the plan from a scenario's initial belief, the measures along its
+// horizon, their errors and certificates. No plant is involved.
 //
 //   PredictionReport report = predict_scenario(load_scenario("dubins_obstacles"), {});
 //   report.certificates[0].value;   // bound of P(unsafe) at stage 1
@@ -27,11 +27,11 @@
 namespace qsmpc::harness {
 
 struct PredictionOptions {
-  std::optional<Eigen::MatrixXd> inputs{};  ///< input_dim x horizon; else they are planned
-  /// Its seed is not used: the scenario's is. No samples: no simulation.
+  std::optional<Eigen::MatrixXd> inputs{};  ///< input_dim x horizon; without them, they are planned
+  /// Its seed is ignored in favour of the scenario's. Without samples there is no simulation.
   MonteCarloOptions monte_carlo{};
-  /// Names of controller::law_methods() that are compared with the simulated paths, of which there
-  /// are then at least kKeptPaths.
+  /// Names of controller::law_methods() to compare with the simulated paths, of which at least
+  /// kKeptPaths are then needed.
   std::vector<std::string> methods{};
 };
 
@@ -41,22 +41,22 @@ struct PredictionReport {
   std::string scenario_text;         ///< the resolved scenario as YAML
   std::string version;
   bool inputs_given = false;
-  std::string solver_status;  ///< of planned inputs; empty where they were given
+  std::string solver_status;  ///< of planned inputs; empty if they were given
   controller::Policy policy;
   controller::CostParts cost;
   controller::Prediction prediction;
   std::vector<controller::StageBudget> budgets;            ///< horizon + 1
   std::vector<controller::StageCertificate> certificates;  ///< stages 1 … horizon
-  double horizon_bound = 1.0;  ///< of being unsafe at any of these stages
+  double horizon_bound = 1.0;  ///< of the probability of being unsafe at any of these stages
   std::optional<UnsafeCounts> monte_carlo;
-  std::optional<LawComparison> laws;  ///< where methods were asked for
-  bool interrupted = false;           ///< the simulation or the comparison was given up
+  std::optional<LawComparison> laws;  ///< if methods were requested
+  bool interrupted = false;           ///< the simulation or the comparison was abandoned
 };
 
 /// Plans for the initial belief of `scenario` over its horizon, or takes the given inputs with the
-/// gains that belong to them; certifies the policy, simulates it if asked, and compares the
-/// methods. Throws std::invalid_argument on given inputs of another size or outside the bounds, on
-/// unknown methods, and on methods with less paths than kKeptPaths.
+/// gains that belong to them; certifies the policy, simulates it if requested, and compares the
+/// methods. Throws std::invalid_argument on given inputs of the wrong size or outside the bounds,
+/// on unknown methods, and on methods with fewer than kKeptPaths paths.
 [[nodiscard]] PredictionReport predict_scenario(const Scenario& scenario,
                                                 const PredictionOptions& options);
 
@@ -71,8 +71,8 @@ struct SimulatedRate {
 
 [[nodiscard]] SimulatedRate simulated_rate(std::int64_t events, std::int64_t samples);
 
-/// Stages whose certificate is below the lower limit of the simulated rate. If there is one, the
-/// certificate is wrong, but for a chance of kRateTail: the program has a bug.
+/// Stages whose certificate is below the lower limit of the simulated rate. Such a certificate is
+/// wrong with confidence 1 − kRateTail: the program has a bug.
 [[nodiscard]] std::vector<int> contradicted_stages(const PredictionReport& report);
 
 }  // namespace qsmpc::harness

@@ -14,12 +14,12 @@
 namespace qsmpc::harness {
 namespace {
 
-// Characters of columns: together with the others at most 78, a terminal has 80.
+// Widths of columns in characters; all columns together take at most 78 of a terminal's 80.
 constexpr std::size_t kStageWidth = 5;
 constexpr std::size_t kStateWidth = 10;
-constexpr std::size_t kNameLimit = 8;  // of a state; a longer one is cut and marked
+constexpr std::size_t kNameLimit = 8;  // of a state's name; a longer one is cut and marked
 
-/// Two states stand for all of them: the position in the plane, else the first two.
+/// Two states represent all of them: the position in the plane, else the first two.
 std::vector<int> shown_states(const models::SystemDescription& system) {
   if (system.position_x >= 0 && system.position_y >= 0) {
     return {system.position_x, system.position_y};
@@ -27,10 +27,10 @@ std::vector<int> shown_states(const models::SystemDescription& system) {
   return system.states.size() > 1 ? std::vector<int>{0, 1} : std::vector<int>{0};
 }
 
-/// What rounding leaves of zero, in any unit that states have.
+/// Values below this are rounding errors of zero, in any unit of the states.
 constexpr double kRoundedToZero = 1e-9;
 
-/// Three decimals where that shows enough and is not too long; at most 9 characters.
+/// Three decimals if that shows enough and is not too long; at most 9 characters.
 std::string number(double value) {
   const double shown = std::abs(value) < kRoundedToZero ? 0.0 : value;
   return is_plain_in_table(shown) ? fmt::format("{:.3f}", shown) : fmt::format("{:.3g}", shown);
@@ -38,7 +38,7 @@ std::string number(double value) {
 
 std::string probability(double value) { return fmt::format("{:.2e}", value); }
 
-/// The columns after the states: widths shared by head, stages and total.
+/// The columns after the states, of the same widths for header, stages and total.
 std::string tail(const std::string& distance, const std::string& bound, const std::string& kind,
                  const std::string& thesis) {
   return fmt::format("{:>9}{:>12}  {:<3}{:>9}", distance, bound, kind, thesis);
@@ -82,7 +82,7 @@ std::string stage_row(const PredictionReport& report, std::size_t stage,
   return text + "\n";
 }
 
-/// Whether what the stages add is less than the sum of their certificates.
+/// Whether the horizon's bound is tighter than the sum of the stages' certificates.
 bool counts_entries(const PredictionReport& report) {
   double sum = 0.0;
   for (const controller::StageCertificate& stage : report.certificates) sum += stage.value;
@@ -98,7 +98,7 @@ std::string total_row(const PredictionReport& report, std::size_t states) {
   return text + "\n";
 }
 
-/// Of what the certificates speak, if they hold at all.
+/// States what the certificates refer to, if they hold at all.
 std::string scope_note(const Scenario& scenario) {
   if (!why_no_bound(scenario).empty()) {
     return "NO BOUND: with measurement noise (disturbance.sensor) the feedback acts on\n"

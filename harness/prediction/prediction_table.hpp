@@ -7,8 +7,9 @@
 
 namespace qsmpc::harness {
 
-/// One row a stage: nominal position, W2 bound, certificate and which it is, the published value
-/// (marked as no bound), and the simulated rate where there is one; then the whole horizon.
+/// One row per stage: nominal position, W2 bound, certificate and its kind, the published value
+/// (marked as not a bound), and the simulated rate if there is one; then a row for the whole
+/// horizon.
 [[nodiscard]] std::string prediction_table(const PredictionReport& report);
 
 }  // namespace qsmpc::harness

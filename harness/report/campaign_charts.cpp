@@ -19,20 +19,20 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr double kLeastCertified = 1e-13;  // left end of the axis: the bin [0, 1e-12) is there
-constexpr std::size_t kMostPanels = 16;    // of variants in reliability.svg
-constexpr std::size_t kMostPairs = 9;      // that have room below an axis
-constexpr std::size_t kMostListed = 20;    // variants in a note
-constexpr std::size_t kNameLimit = 90;     // of a variant in a note
-constexpr std::size_t kTitleLimit = 44;    // of a variant in a title
-constexpr double kBeside = 0.12;           // between points of one variant
-constexpr double kRoom = 0.5;              // left and right of the outer variants
+constexpr std::size_t kMostPanels = 16;    // most variants in reliability.svg
+constexpr std::size_t kMostPairs = 9;      // most pairs with room below an axis
+constexpr std::size_t kMostListed = 20;    // most variants in a note
+constexpr std::size_t kNameLimit = 90;     // of a variant's name in a note
+constexpr std::size_t kTitleLimit = 44;    // of a variant's name in a title
+constexpr double kBeside = 0.12;           // distance between points of one variant
+constexpr double kRoom = 0.5;              // margin left and right of the outer variants
 
 constexpr const char* kListedBefore = "The numbers are those of the first chart.";
 constexpr const char* kRateLabel = "share of periods that ended unsafe (–)";
 
-/// A point with its interval for each bin. One without events stands at 0, in a part of the axis
-/// that is never shaded: nothing went wrong there, however few its periods. What is called exceeded
-/// stands out.
+/// Adds a point with its interval for each bin. A bin without events is drawn at 0, in the part of
+/// the axis that is never shaded: nothing went wrong there, however few periods it has. Exceeded
+/// bins stand out.
 void add_bins(const std::string& name, int colour, const std::vector<CalibrationBin>& bins,
               Chart& chart) {
   Series seen{.name = name, .colour = colour, .mark = Mark::kPoints};
@@ -58,13 +58,13 @@ void add_bins(const std::string& name, int colour, const std::vector<Calibration
   }
 }
 
-/// Of the published value: it is no bound, so that nothing can exceed it.
+/// Bins of the published value, which is not a bound, so that nothing can exceed it.
 std::vector<CalibrationBin> not_bounds(std::vector<CalibrationBin> bins) {
   for (CalibrationBin& bin : bins) bin.exceeded = false;
   return bins;
 }
 
-/// The decade below all that is drawn, but for lower ends of intervals.
+/// The decade below everything that is drawn except for the lower ends of intervals.
 double foot_of(const Chart& chart) {
   double least = 0.1;
   for (const Series& series : chart.series) {
@@ -76,7 +76,7 @@ double foot_of(const Chart& chart) {
   return std::pow(10.0, std::floor(std::log10(least) - 0.5));
 }
 
-/// Where the axis of what was certified begins: the same for all charts of a campaign.
+/// The lower end of the axis of certified values, common to all charts of a campaign.
 double least_certified(const CampaignStatistics& statistics) {
   double least = 0.1;
   for (const auto* bins : {&statistics.calibration, &statistics.published}) {
@@ -87,7 +87,7 @@ double least_certified(const CampaignStatistics& statistics) {
   return least > kLeastCertified ? std::pow(10.0, std::floor(std::log10(least))) : kLeastCertified;
 }
 
-/// The diagonal, above which more happened than certified, from the foot of the chart.
+/// Adds the diagonal from the foot of the chart. Above it, more happened than was certified.
 void add_diagonal(Chart& chart) {
   const double foot = std::max(chart.least_shown, chart.least_x);
   const double left = chart.least_x;
@@ -110,8 +110,9 @@ struct Reliability {
   std::string title;
   const std::vector<CalibrationBin>& certified;
   const std::vector<CalibrationBin>& published;
-  std::string no_bound{};   ///< why, and of which variants, certificates are none; empty: all are
-  bool none_holds = false;  ///< none of them is a bound, so that none can be exceeded
+  std::string no_bound{};   ///< why, and in which variants, certificates are not bounds; empty: all
+                            ///< are
+  bool none_holds = false;  ///< none of them is a bound, so none can be exceeded
 };
 
 Chart reliability_chart(const Reliability& shown, double least) {
@@ -168,7 +169,8 @@ Chart period_chart(const CampaignStatistics& statistics) {
   return chart;
 }
 
-/// Their places, ascending: at most kMostPanels, first those of which a certificate is exceeded.
+/// Indices of the variants with a chart, ascending: at most kMostPanels, preferring those with an
+/// exceeded certificate.
 std::vector<std::size_t> variants_with_a_chart(const CampaignStatistics& statistics) {
   const auto is_exceeded = [&](std::size_t n) {
     return std::ranges::any_of(statistics.variants[n].calibration, &CalibrationBin::exceeded);
@@ -213,7 +215,7 @@ CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
   return figure;
 }
 
-/// What the numbers of variants mean.
+/// The legend of the variants' numbers.
 std::string variant_list(const CampaignStatistics& statistics) {
   std::string list;
   const std::size_t count = statistics.variants.size();
@@ -223,7 +225,7 @@ std::string variant_list(const CampaignStatistics& statistics) {
   return list + (count > kMostListed ? "; …" : ".");
 }
 
-/// A chart of what is called `names`, at x = 1, 2, …
+/// A chart of the items `names` at x = 1, 2, …
 Chart named_chart(const std::string& title, std::vector<std::string> names) {
   const auto count = static_cast<double>(names.size());
   return {.title = title,
@@ -243,7 +245,7 @@ std::vector<std::string> pair_numbers(const CampaignStatistics& statistics) {
   return thinned(std::move(numbers), kMostPairs);
 }
 
-/// `rate` of each variant with its interval, `beside` its number.
+/// `rate` of each variant with its interval, offset by `beside` from its number.
 Series rate_series(const CampaignStatistics& statistics, const std::string& name, int colour,
                    EpisodeRate VariantStatistics::*rate, double beside) {
   Series series{.name = name, .colour = colour, .mark = Mark::kPoints};
@@ -257,7 +259,7 @@ Series rate_series(const CampaignStatistics& statistics, const std::string& name
   return series;
 }
 
-/// Of a single variant: one point an outcome.
+/// For a single variant: one point per outcome.
 CampaignFigure outcomes_of_one(const CampaignStatistics& statistics) {
   const std::vector<ListedOutcome> outcomes = outcomes_of(statistics.variants);
   Chart chart = named_chart("What became of the drives (99 % intervals)", {});
@@ -294,7 +296,7 @@ CampaignFigure outcome_figure(const CampaignStatistics& statistics) {
   failed.y_includes = {0.0};
   const std::vector<ListedOutcome> outcomes = outcomes_of(statistics.variants);
   double beside = -0.5 * kBeside * static_cast<double>(outcomes.size() - 2);
-  for (std::size_t n = 1; n < outcomes.size(); ++n) {  // all but those that reached it
+  for (std::size_t n = 1; n < outcomes.size(); ++n) {  // all except those that reached it
     failed.series.push_back(rate_series(
         statistics, outcomes[n].title, outcome_colour(outcomes[n].name), outcomes[n].rate, beside));
     beside += kBeside;

@@ -16,18 +16,18 @@ inline constexpr const char* kDistributionsFile = "distributions.svg";
 inline constexpr const char* kTradeoffFile = "tradeoff.svg";
 inline constexpr const char* kRareFile = "rare.svg";
 
-/// A figure: charts that stand together, and the name of its file.
+/// A figure: charts shown together, and the name of its file.
 struct CampaignFigure {
   std::string file;  ///< e.g. "reliability.svg"
   std::vector<Chart> charts;
 };
 
-/// outcomes.svg (rates by variant), reliability.svg (what was observed against what was certified,
-/// of all variants together and of each of up to 16 variants) and, where variants are compared,
-/// differences.svg (by pair of variants, one chart a quantity); where drives differ,
-/// distributions.svg (of cost, clearance and time); and where the campaign asks for it,
-/// tradeoff.svg (risk against cost, one chart a scenario and plant) and rare.svg (estimates of how
-/// probable an unsafe drive is, one chart a variant).
+/// outcomes.svg (rates by variant) and reliability.svg (observed against certified rates, for all
+/// variants together and for each of up to 16 variants). If variants are compared, also
+/// differences.svg (by pair of variants, one chart per quantity); if drives differ,
+/// distributions.svg (of cost, clearance and time); and if the campaign asks for them, tradeoff.svg
+/// (risk against cost, one chart per scenario and plant) and rare.svg (estimates of the probability
+/// of an unsafe drive, one chart per variant).
 [[nodiscard]] std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistics);
 
 }  // namespace qsmpc::harness

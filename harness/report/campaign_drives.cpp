@@ -23,18 +23,19 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kMostNoBound = 12;  // variants that are listed as without a bound
+constexpr std::size_t kMostNoBound = 12;  // most variants that are listed as having no bound
 
 constexpr std::size_t kMostMaps = 12;
-constexpr std::size_t kMostAxisNumbers = 20;  // that have room below an axis
+constexpr std::size_t kMostAxisNumbers = 20;  // most numbers with room below an axis
 constexpr std::size_t kMapNameLimit = 44;     // bytes of a variant's name
-// Paths of one outcome that may be drawn strongly; fewer of those that arrived, to see the others.
+// Most paths of one outcome that are drawn strongly; fewer of those that arrived, so that the
+// others stay visible.
 constexpr std::size_t kMostProminent = 30;
 constexpr std::size_t kMostProminentArrived = 8;
 constexpr std::size_t kReasonLimit = 200;
-constexpr double kSideRoom = 0.5;       // left and right of the outer variants
-constexpr std::size_t kRangeBegin = 1;  // of spread_shares
-constexpr std::size_t kMiddle = 3;      // the same
+constexpr double kSideRoom = 0.5;       // margin left and right of the outer variants
+constexpr std::size_t kRangeBegin = 1;  // index into spread_shares
+constexpr std::size_t kMiddle = 3;      // index into spread_shares
 constexpr std::size_t kRangeEnd = 5;
 
 /// The colours of the bars in web/tables.css.
@@ -45,7 +46,7 @@ constexpr std::array<std::pair<const char*, int>, 6> kOutcomeColours = {{{"reach
                                                                          {"fault", kOrange},
                                                                          {kLeftSafeSet, kSky}}};
 
-/// Places of the variants that have paths and of which there is a map.
+/// Indices of the variants that have paths and get a map.
 std::vector<std::size_t> variants_with_a_map(const CampaignStatistics& statistics) {
   std::vector<std::size_t> places;
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
@@ -58,7 +59,7 @@ std::vector<std::size_t> variants_with_a_map(const CampaignStatistics& statistic
   return places;
 }
 
-/// Ground and axes. Throws what the scenario's text or its model throws.
+/// Ground and axes of the map. Throws whatever parsing the scenario or loading its model throws.
 PlaneMap ground_of(const VariantStatistics& variant) {
   const Scenario scenario = parse_scenario(
       variant.scenario_text,
@@ -68,7 +69,7 @@ PlaneMap ground_of(const VariantStatistics& variant) {
   return map;
 }
 
-/// Drives that arrived lie below the others.
+/// Adds the paths of a variant; drives that arrived lie below the others.
 void add_paths(const VariantStatistics& variant, PlaneMap& map) {
   std::map<std::string, std::size_t> counts;
   for (const DrivenPath& path : variant.paths) ++counts[path.outcome];
@@ -99,7 +100,7 @@ std::string drawn_text(const VariantStatistics& variant) {
                               : "");
 }
 
-/// What is drawn of a quantity of the drives.
+/// How the distribution of a quantity of the drives is drawn.
 struct Quantity {
   const char* title;
   const char* note;
@@ -228,7 +229,7 @@ DriveMaps drive_maps(const CampaignStatistics& statistics) {
       map.note = drawn_text(variant);
       add_paths(variant, map);
       drives.maps.push_back(std::move(map));
-    } catch (const std::exception& error) {  // e.g. the library of its model is gone
+    } catch (const std::exception& error) {  // e.g. the library of its model is missing
       drives.notes.push_back(
           fmt::format("No map of variant {}: {}", name, printable(error.what(), kReasonLimit)));
     }

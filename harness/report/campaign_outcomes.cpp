@@ -17,10 +17,10 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kBarLength = 100.0;         // the bar's own units
+constexpr double kBarLength = 100.0;         // in the bar's own units
 constexpr std::size_t kWorstNameLimit = 90;  // bytes of a variant's name in a sentence
 
-/// The class of the style that fills what stands for `outcome`.
+/// The CSS class that fills the bar of `outcome`.
 std::string fill_of(const ListedOutcome& outcome) { return "fill-" + outcome.name; }
 
 std::int64_t total_of(const CampaignStatistics& statistics, const ListedOutcome& outcome) {
@@ -41,7 +41,7 @@ std::string totals_text(const CampaignStatistics& statistics) {
   return text + ".";
 }
 
-/// Where drives were unsafe most often; empty where there is nothing to compare.
+/// Names the variant whose drives were unsafe most often; empty if there is nothing to compare.
 std::string worst_variant_text(const CampaignStatistics& statistics) {
   const std::vector<VariantStatistics>& variants = statistics.variants;
   if (variants.size() < 2) return {};
@@ -53,7 +53,7 @@ std::string worst_variant_text(const CampaignStatistics& statistics) {
                      format_percent(worst->unsafe.rate), printable(worst->name, kWorstNameLimit));
 }
 
-/// All of its drives from left to right, by what became of them.
+/// All drives of a variant from left to right, grouped by outcome.
 std::string bar_html(const VariantStatistics& variant, const std::vector<ListedOutcome>& outcomes) {
   std::string parts;
   std::string words;
@@ -76,8 +76,7 @@ std::string bar_html(const VariantStatistics& variant, const std::vector<ListedO
       kBarLength, escape_html(words.empty() ? "no drive yet" : words), parts);
 }
 
-/// A share in percent above its limits; in soft print where there is none, and to be seen where it
-/// is a failure.
+/// A share in percent above its limits; in soft print if it is 0, highlighted if it is a failure.
 std::string percent_html(const EpisodeRate& rate, bool is_unsafe) {
   if (!std::isfinite(rate.rate)) return "–";
   std::string share = format_percent(rate.rate) + " %";

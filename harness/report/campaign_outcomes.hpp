@@ -1,4 +1,4 @@
-// What became of a campaign's drives: the part of its page that comes first.
+// The outcomes of a campaign's drives: the first part of its page.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace qsmpc::harness {
 
-/// Bad where a drive was unsafe; good where all that are done reached the target.
+/// Bad if a drive was unsafe; good if all finished drives reached the target.
 [[nodiscard]] PageVerdict outcome_verdict(const CampaignStatistics& statistics);
 
 /// HTML: the verdict, and a table with a bar and the rates of each variant.

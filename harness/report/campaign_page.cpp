@@ -21,11 +21,11 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kFifth = 1;   // of spread_shares
-constexpr std::size_t kMedian = 3;  // the same
+constexpr std::size_t kFifth = 1;   // index into spread_shares
+constexpr std::size_t kMedian = 3;  // index into spread_shares
 constexpr std::size_t kNinetyFifth = 5;
 
-/// The head of a variant's row.
+/// The header of a variant's row.
 std::string variant_head(const CampaignStatistics& statistics, std::size_t variant) {
   return fmt::format("{}: {}", statistics.variants[variant].id,
                      escape_html(statistics.variants[variant].name));
@@ -162,7 +162,7 @@ std::string link_html(const std::string& path, const std::string& words) {
   return fmt::format("<a href=\"{}\">{}</a>", url, words);
 }
 
-/// What there is of an episode, and how to make the rest.
+/// Links to an episode's existing files, and the commands that create the rest.
 std::string files_html(const ListedEpisode& episode) {
   std::string html;
   for (const auto& [path, words] :
@@ -176,7 +176,7 @@ std::string files_html(const ListedEpisode& episode) {
   return html;
 }
 
-/// To be seen where the drive was unsafe.
+/// Highlighted if the drive was unsafe.
 std::string worst_outcome_html(const EpisodeRow& row) {
   const std::string outcome = escape_html(row.outcome);
   return row.unsafe ? "<strong class=\"alarm\">" + outcome + "</strong>" : outcome;
@@ -208,7 +208,7 @@ std::string worst_table(const CampaignStatistics& statistics,
          table_html(table);
 }
 
-/// Panels beside each other, such that no row has a gap if possible; nothing of none.
+/// Panels side by side, such that no row has a gap if possible; empty without panels.
 std::string grid(const std::vector<Panel>& panels) {
   if (panels.empty()) return {};
   std::string html =
@@ -217,7 +217,7 @@ std::string grid(const std::vector<Panel>& panels) {
   return html + "</div>\n";
 }
 
-/// The charts of one figure, without those that would show a single point.
+/// The charts of one figure, except those that would show a single point.
 std::vector<Panel> charts_of(const std::vector<CampaignFigure>& figures, const char* file) {
   std::vector<Panel> panels;
   for (const CampaignFigure& figure : figures) {
@@ -234,7 +234,8 @@ std::string rates_section(const std::vector<CampaignFigure>& figures) {
   return charts.empty() ? charts : section_head("Outcomes with their intervals", {}) + charts;
 }
 
-/// The maps, and after them how cost, clearance and time are distributed; beside a single map.
+/// The maps, followed by the distributions of cost, clearance and time, which stand beside a single
+/// map.
 std::string drives_section(const CampaignStatistics& statistics,
                            const std::vector<CampaignFigure>& figures) {
   const DriveMaps drives = drive_maps(statistics);

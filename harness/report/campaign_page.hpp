@@ -1,4 +1,4 @@
-// The report of a campaign: one HTML page that needs nothing but itself.
+// The report of a campaign: one self-contained HTML page.
 //
 //   write_file(folder + "/report.html", campaign_page(statistics));
 #pragma once
@@ -11,19 +11,19 @@
 
 namespace qsmpc::harness {
 
-/// An episode that is worth looking at, and what there is of it. Paths are relative to the folder
-/// of the page, empty where there is no such file.
+/// An episode worth inspecting, and the files that exist for it. Paths are relative to the folder
+/// of the page, and empty if there is no such file.
 struct ListedEpisode {
   EpisodeRow row{};
   std::string page{};
   std::string video{};
   std::string trace{};
-  std::vector<std::string> commands{};  ///< that make what is not there, one a line
+  std::vector<std::string> commands{};  ///< that create the missing files, one per line
 };
 
-/// The page as UTF-8 text: what became of the drives, cost and times, certificates, differences,
-/// the `worst` episodes, each linked to what there is of it, and the figures. It loads nothing and
-/// runs no script; texts are escaped.
+/// The page as UTF-8 text: outcomes of the drives, cost and times, certificates, differences, the
+/// `worst` episodes with links to their existing files, and the figures. It loads nothing and runs
+/// no script; texts are escaped.
 [[nodiscard]] std::string campaign_page(const CampaignStatistics& statistics,
                                         const std::vector<ListedEpisode>& worst = {});
 

@@ -13,12 +13,12 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kStageLabel = "stage";
-constexpr double kLeastResidual = 1e-9;      // what is below is drawn at the foot of the axis
+constexpr double kLeastResidual = 1e-9;      // smaller values are drawn at the foot of the axis
 constexpr double kLeastProbability = 1e-10;  // the same
-constexpr std::ptrdiff_t kMostWithUnit = 4;  // states whose units have room below the axis
-constexpr double kSpread = 0.24;  // left and right of a state's name, of what is drawn at it
+constexpr std::ptrdiff_t kMostWithUnit = 4;  // most states whose units have room below the axis
+constexpr double kSpread = 0.24;  // spread of the points to the left and right of a state's name
 
-/// Colours of the plants, blue left to what they are compared with.
+/// Colours of the plants; blue is reserved for what they are compared with.
 int plant_colour(std::size_t plant) { return 1 + static_cast<int>(plant) % (kPaletteSize - 1); }
 
 std::string with_unit(const models::Coordinate& coordinate) {
@@ -26,7 +26,7 @@ std::string with_unit(const models::Coordinate& coordinate) {
                                  : coordinate.name + " (" + printed_unit(coordinate.unit) + ")";
 }
 
-/// Values beside the names of the states, `beside` them by a part of the way to the next.
+/// Values at the names of the states, offset by `beside`, a fraction of the distance between names.
 Series by_coordinate(const std::string& name, int colour, const Eigen::VectorXd& values,
                      double beside) {
   Series series{.name = name, .colour = colour, .mark = Mark::kPoints};
@@ -129,7 +129,7 @@ ComparisonFigure w2_figure(const Comparison& comparison) {
   return {.file = "w2.svg", .charts = {std::move(chart)}};
 }
 
-/// A point with its interval for each stage, at 0 where no path is unsafe.
+/// Adds a point with its interval for each stage, at 0 if no path is unsafe.
 void add_observed(const Comparison& comparison, const PlantComparison& plant, Chart& chart) {
   Series seen{.name = "observed, 99 % interval", .colour = kVermilion, .mark = Mark::kPoints};
   Series unseen{

@@ -21,8 +21,8 @@
 namespace qsmpc::harness {
 namespace {
 
-/// The head of what is certified for the drives. Along the plan the policy sees the state, and
-/// certificates are bounds in any case.
+/// The header of the certified values of the drives. Along the plan the policy sees the state, so
+/// those certificates are always bounds.
 const char* certified_head(const Comparison& comparison) {
   return why_no_bound(comparison.scenario).empty() ? "certified" : "certified: no bound";
 }
@@ -44,7 +44,7 @@ std::string plus_minus(double value, double deviation) {
                      number_html(deviation));
 }
 
-/// To be seen where there are some.
+/// Highlighted unless 0.
 std::string failures_html(std::int64_t count) {
   return count == 0 ? "0" : fmt::format("<strong class=\"alarm\">{}</strong>", count);
 }
@@ -111,7 +111,7 @@ PageTable covariance_table(const PlantComparison& plant, const models::SystemDes
   return table;
 }
 
-/// What a plant adds in a period: tables, or one sentence where all of it is rounding.
+/// A plant's residuals per period: tables, or one sentence if all of them are rounding.
 std::string residuals_of(const Comparison& comparison, const PlantComparison& plant,
                          const models::SystemDescription& system) {
   if (is_the_model(plant)) {
@@ -138,7 +138,7 @@ std::string name_head(const PlantComparison& plant) {
   return "<h3 class=\"name\">" + escape_html(plant.name) + "</h3>\n";
 }
 
-/// Whether some plant differs from the model by more than rounding, which charts then show.
+/// Whether some plant differs from the model by more than rounding, so that charts are worthwhile.
 bool has_mismatch(const Comparison& comparison) {
   return !std::ranges::all_of(comparison.plants, is_the_model);
 }
@@ -154,7 +154,7 @@ std::string residual_section(const Comparison& comparison, const models::SystemD
     tables += name_head(plant) + residuals_of(comparison, plant, system);
   }
   if (!has_mismatch(comparison)) return head + tables;
-  // The chart stands beside the tables, not beside nothing, where these leave room for it.
+  // The chart is placed beside the tables if they leave room for it.
   constexpr std::size_t kMostBeside = 3;  // states
   if (system.states.size() > kMostBeside) return head + tables + figures(figure);
   std::string html =
@@ -163,7 +163,7 @@ std::string residual_section(const Comparison& comparison, const models::SystemD
   return html + "</div>\n";
 }
 
-/// Whether the certificate in force at the stage at place `k` is exceeded.
+/// Whether the certificate in force at the stage with index `k` is exceeded.
 bool is_exceeded(const PlantComparison& plant, std::size_t k) {
   const std::vector<int>& stages = plant.exceeded_stages;
   return std::ranges::find(stages, plant.horizon[k].stage) != stages.end();
@@ -237,7 +237,7 @@ std::string plan_section(const Comparison& comparison, const models::SystemDescr
   return html;
 }
 
-/// The stage at which most paths are unsafe; the first of those.
+/// The first of the stages at which most paths are unsafe.
 const HorizonStage& worst_stage(const PlantComparison& plant) {
   return *std::ranges::max_element(plant.horizon, {}, &HorizonStage::unsafe);
 }

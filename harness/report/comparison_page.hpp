@@ -1,4 +1,4 @@
-// The report of a comparison: one HTML page that needs nothing but itself.
+// The report of a comparison: one self-contained HTML page.
 //
 //   write_file(folder + "/report.html", comparison_page(read_comparison(folder)));
 #pragma once
@@ -11,7 +11,7 @@ namespace qsmpc::harness {
 
 /// The page as UTF-8 text: whether a certificate was exceeded and which plant is farthest from the
 /// model, then the numbers with their figures. It loads nothing and runs no script; texts are
-/// escaped. Of a comparison that was read from its file it is the same, byte for byte.
+/// escaped. A comparison read back from its file gives the same page, byte for byte.
 [[nodiscard]] std::string comparison_page(const Comparison& comparison);
 
 }  // namespace qsmpc::harness

@@ -18,7 +18,7 @@ constexpr std::size_t kPlantNameLimit = 120;  // bytes of a plant's name, which 
 
 std::string name_of(const PlantComparison& plant) { return printable(plant.name, kPlantNameLimit); }
 
-/// What is exceeded on `plant`; empty if nothing is.
+/// States what is exceeded on `plant`; empty if nothing is.
 std::string exceeded_text(const PlantComparison& plant) {
   std::string text;
   if (!plant.exceeded_stages.empty()) {
@@ -32,7 +32,7 @@ std::string exceeded_text(const PlantComparison& plant) {
   return text.empty() ? text : fmt::format("On {} {}.", name_of(plant), text);
 }
 
-/// How far a single plant is from the model.
+/// States how far a single plant is from the model.
 std::string distance_text(const PlantComparison& plant) {
   const std::string name = name_of(plant);
   if (is_the_model(plant)) return fmt::format("{} is the model, but for rounding.", name);
@@ -61,7 +61,7 @@ std::string farthest_text(const Comparison& comparison) {
       name_of(plant), format_short(divergence));
 }
 
-/// `exceeded`: on how many of the plants a certificate is.
+/// `exceeded`: number of plants on which a certificate is exceeded.
 std::string verdict_title(std::size_t exceeded, std::size_t plants) {
   const bool is_single = plants == 1;
   if (exceeded == 0) {

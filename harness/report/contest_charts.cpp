@@ -15,11 +15,12 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kDotLabelLimit = 18;  // of a controller beside its dot
+constexpr std::size_t kDotLabelLimit = 18;  // of a controller's name beside its dot
 constexpr std::size_t kCellTitleLimit = 60;
-constexpr double kBelowOneOfAll = 0.5;  // of the rate of one unsafe drive: where the axis begins
+constexpr double kBelowOneOfAll = 0.5;  // the axis begins at this fraction of the rate of one
+                                        // unsafe drive
 
-/// Where a controller stands up the chart.
+/// A controller's cost, i.e. its place along the vertical axis.
 struct CostPlace {
   double mean = 0.0;
   RateInterval interval{};
@@ -49,7 +50,7 @@ std::string standings_in_words(const ContestResults& results, const std::string&
   return words + ".";
 }
 
-/// Which controllers have no dot, and why.
+/// States which controllers have no dot, and why.
 std::string missing_dots(const ContestResults& results, const std::vector<Standing>& standings,
                          CostPlace (*place)(const Standing&)) {
   std::string names;
@@ -89,13 +90,13 @@ Chart standings_chart(const ContestResults& results, const std::string& title,
                             .x_lower = {unsafe.interval.lower},
                             .x_upper = {unsafe.interval.upper},
                             .labels = {name}});
-    // What has no place is told in the note.
+    // Controllers without a place are listed in the note.
     if (!std::isfinite(unsafe.rate) || !std::isfinite(cost.mean)) chart.series.pop_back();
   }
   return chart;
 }
 
-/// A chart without a dot says nothing that its table does not.
+/// Removes charts without a dot, which would add nothing to their tables.
 void leave_out_empty(std::vector<Chart>& charts) {
   std::erase_if(charts, [](const Chart& chart) { return chart.series.empty(); });
 }

@@ -1,4 +1,4 @@
-// Risk against cost of a contest: what its page and contest.svg show.
+// Charts of risk against cost of a contest, for its page and contest.svg.
 #pragma once
 
 #include <vector>
@@ -12,16 +12,16 @@ namespace qsmpc::harness {
 inline constexpr const char* kContestFigure = "contest.svg";
 inline constexpr const char* kContestPaperFigure = "contest.pdf";
 
-/// One dot a controller: the share of its drives that were unsafe, and their cost relative to the
-/// reference's on the same seeds, both with 99 % intervals, over all cells.
+/// One dot per controller, over all cells: the share of its drives that were unsafe, and their cost
+/// relative to the reference's on the same seeds, both with 99 % intervals.
 [[nodiscard]] Chart overall_chart(const ContestResults& results);
 
-/// The same of each cell, with the mean cost of the drives that reached the target; without the
-/// cells in which no controller has such a drive.
+/// The same for each cell, with the mean cost of the drives that reached the target; cells in which
+/// no controller has such a drive are left out.
 [[nodiscard]] std::vector<Chart> cell_charts(const ContestResults& results);
 
-/// The charts of the figure: the one over all cells where there are several, then those of cells;
-/// none without a dot.
+/// The charts of the figure: first the one over all cells if there are several, then those of the
+/// cells; charts without a dot are left out.
 [[nodiscard]] std::vector<Chart> contest_charts(const ContestResults& results);
 
 }  // namespace qsmpc::harness

@@ -40,7 +40,7 @@ std::string share_alone_html(const EpisodeRate& rate) {
   return escape_html(format_percent(rate.rate)) + " %";
 }
 
-/// To be seen where there is any.
+/// Highlighted unless 0.
 std::string failure_share_html(const EpisodeRate& rate) {
   const std::string share = share_alone_html(rate);
   return rate.events > 0 ? "<strong class=\"alarm\">" + share + "</strong>" : share;
@@ -68,7 +68,7 @@ const char* mark_of(MatchResult result) {
 
 std::string signed_short(double value) { return (value > 0.0 ? "+" : "") + number_html(value); }
 
-/// "+3.5 [1, 6]", in points of percent.
+/// "+3.5 [1, 6]", in percentage points.
 std::string share_versus_html(const std::optional<Versus>& versus) {
   if (!versus) return "<span class=\"soft\">reference</span>";
   const ShareDifference& unsafe = versus->unsafe;
@@ -106,8 +106,8 @@ std::vector<std::string> time_cells(const ContestTimes& times) {
                               : "")};
 }
 
-/// The cells that a row of either table begins with, after its head. `collided`: how it shows that
-/// share.
+/// The first cells of a row of either table, after its header. `collided`: formats the share of
+/// collisions.
 std::vector<std::string> outcome_cells(const Standing& standing,
                                        std::string (*collided)(const EpisodeRate&)) {
   return {share_alone_html(standing.reached), collided(standing.collision),
@@ -232,7 +232,7 @@ std::string settings_html(const std::vector<CampaignSetting>& settings) {
   return html;
 }
 
-/// What was tried of a controller that had a choice.
+/// The candidates tried for a controller with several.
 std::string tried_table(const ContestController& controller,
                         const std::vector<TriedCandidate>& tried, std::size_t chosen) {
   PageTable table{.label = "Candidates of " + controller.name,

@@ -21,7 +21,7 @@ MapPolygon polygon_of(const controller::PlanarShape& shape) {
   return polygon;
 }
 
-/// The obstacle alone, where the poses have it: its stages are the control instants.
+/// Only obstacle n, at its true poses; stages are the control instants.
 controller::UnsafeSet alone(const controller::SafeSet& safe_set, const DrivenObstacles& others,
                             std::size_t n) {
   controller::SafeSet one = controller::unbounded_safe_set(safe_set.dim());
@@ -35,7 +35,7 @@ controller::UnsafeSet alone(const controller::SafeSet& safe_set, const DrivenObs
   return one;
 }
 
-/// The control instant at which the vehicle was nearest to obstacle n, the first of several.
+/// The first control instant at which the vehicle was nearest to obstacle n.
 std::size_t nearest_instant(const EpisodeView& view, const DrivenObstacles& others, std::size_t n) {
   const controller::UnsafeSet unsafe = alone(view.scenario().safe_set, others, n);
   const Eigen::MatrixXd& states = view.states();

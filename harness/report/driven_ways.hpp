@@ -1,4 +1,4 @@
-// The obstacles of a drive that move, as maps show them.
+// The moving obstacles of a drive, as shown on maps.
 #pragma once
 
 #include <vector>
@@ -10,15 +10,16 @@
 
 namespace qsmpc::harness {
 
-/// Where each truly went, and where it was when the vehicle's body was nearest to it, for a system
-/// with a position in the plane.
+/// The true path of each obstacle, and its pose when the vehicle's body was nearest to it, for a
+/// system with a position in the plane.
 [[nodiscard]] std::vector<MapMover> driven_ways(const EpisodeView& view,
                                                 const DrivenObstacles& others);
 
-/// Where each is written, with nothing but its start: of drives that each have other ways.
+/// Each obstacle at its initial pose only, for maps of several drives with different obstacle
+/// paths.
 [[nodiscard]] std::vector<MapMover> written_movers(const controller::SafeSet& safe_set);
 
-/// The scenario without its obstacles that move.
+/// The scenario without its moving obstacles.
 [[nodiscard]] Scenario standing_scenario(Scenario scenario);
 
 }  // namespace qsmpc::harness

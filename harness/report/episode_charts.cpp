@@ -38,7 +38,7 @@ Series series_of(const Trace& trace, const std::string& name, int colour, const 
   return series;
 }
 
-/// What is drawn, limits aside.
+/// The vertical extent of what is drawn, excluding limits.
 Axis extent_of(const Chart& chart) {
   std::vector<double> values = chart.y_includes;
   for (const Series& series : chart.series) {
@@ -62,13 +62,13 @@ void add_sentence(const std::string& sentence, std::string& note) {
   note += (note.empty() ? "" : " ") + sentence;
 }
 
-/// Says limits that are far beyond what is drawn, in `unit`, in place of drawing them.
+/// States limits far beyond what is drawn, in `unit`, instead of drawing them.
 void say_limits_beyond_the_scale(const std::string& unit, Chart& chart) {
   const Axis drawn = extent_of(chart);
   std::string said;
   std::vector<Rule> kept;
   std::string name;
-  bool is_named = false;  // the group's name stands already where it is said, or drawn
+  bool is_named = false;  // the group's name was already stated, or drawn
   for (const Rule& rule : chart.rules) {
     if (!rule.name.empty()) name = rule.name;
     if (is_drawable(rule.value) && is_beyond(drawn, rule.value)) {
@@ -94,7 +94,7 @@ Chart input_chart(const EpisodeView& view, Eigen::Index input) {
     return input < step.input.size() ? step.input[input] : kNotANumber;
   });
   series.mark = Mark::kSteps;
-  if (!series.x.empty()) {  // held to the end of the last period
+  if (!series.x.empty()) {  // hold the last value to the end of its period
     series.x.push_back(view.duration());
     series.y.push_back(series.y.back());
   }
@@ -109,8 +109,8 @@ Chart input_chart(const EpisodeView& view, Eigen::Index input) {
   return chart;
 }
 
-/// The periods that ended unsafe, as marks at probability 1, each at its beginning, where the
-/// certificate stands that spoke of it.
+/// The periods that ended unsafe, as marks at probability 1. Each mark is at the period's
+/// beginning, like the certificate that refers to it.
 Series unsafe_periods(const EpisodeView& view) {
   Series series{
       .name = "observed: the period ended unsafe", .colour = kOrange, .mark = Mark::kPoints};
@@ -152,7 +152,7 @@ Chart certificate_chart(const EpisodeView& view) {
   chart.series.push_back(
       series_of(trace, "published method, worst stage: not a bound", kPurple, thesis));
   chart.series.back().dashed = true;
-  // On a logarithmic axis a limit of 0 has no place.
+  // A limit of 0 cannot be shown on a logarithmic axis.
   const Scenario::Risk& risk = trace.scenario.risk;
   const auto add_limit = [&chart](const char* name, double limit) {
     if (!(limit > 0.0) || !std::isfinite(limit)) return;
@@ -266,7 +266,7 @@ Chart timing_chart(const Trace& trace) {
   return chart;
 }
 
-/// An upright line, dashed, from 0 to `height`.
+/// A vertical dashed line from 0 to `height`.
 Series upright(const std::string& name, int colour, double at, double height) {
   return {.name = name, .colour = colour, .dashed = true, .x = {at, at}, .y = {0.0, height}};
 }
@@ -280,7 +280,7 @@ Chart solve_time_histogram(const Trace& trace) {
     if (std::isfinite(step.timing.total)) longest = std::max(longest, step.timing.total);
   }
   const double width = std::max(longest, 1e-3) / kBins;
-  std::vector<double> counts(kBins + 1, 0.0);  // the last one closes the outline
+  std::vector<double> counts(kBins + 1, 0.0);  // the last entry closes the outline
   for (const StepRecord& step : trace.steps) {
     if (!std::isfinite(step.timing.total) || step.timing.total < 0.0) continue;
     ++counts[std::min(static_cast<std::size_t>(step.timing.total / width), kBins - 1)];
@@ -315,7 +315,7 @@ Chart solve_time_histogram(const Trace& trace) {
 }  // namespace
 
 Scale budget_scale(const Trace& trace) {
-  constexpr double kWide = 1e4;  // of which a linear axis shows nothing but the largest
+  constexpr double kWide = 1e4;  // of such a range, a linear axis shows only the largest values
   double least = kInfinity;
   double largest = 0.0;
   for (const StepRecord& step : trace.steps) {

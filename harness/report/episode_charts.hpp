@@ -1,4 +1,4 @@
-// What happened along an episode, as charts over time.
+// An episode as charts over time.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace qsmpc::harness {
 
-/// Over time: certificates with what was observed, clearance, each input against its bounds, solve
-/// time, parts of the cost, error budget; and the histogram of the solve times. Of a trace without
-/// steps, they have no points.
+/// Charts over time: certificates with observed outcomes, clearance, each input against its bounds,
+/// solve time, parts of the cost, error budget; and the histogram of the solve times. For a trace
+/// without steps, they have no points.
 [[nodiscard]] std::vector<Chart> episode_charts(const EpisodeView& view);
 
-/// What a budget below is drawn as on a logarithmic axis.
+/// Smaller budgets are drawn at this value on a logarithmic axis.
 inline constexpr double kLeastBudget = 1e-3;
 
-/// The scale on which the error budgets of all periods and stages can be read.
+/// The scale on which the error budgets of all periods and stages are legible.
 [[nodiscard]] Scale budget_scale(const Trace& trace);
 
 }  // namespace qsmpc::harness

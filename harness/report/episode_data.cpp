@@ -24,8 +24,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostParticles = 400'000;  // of a page: some 3 MB as text
-constexpr std::uint16_t kNowhere = 65'535;       // outside of the map, or not finite
+constexpr std::size_t kMostParticles = 400'000;  // per page: about 3 MB as text
+constexpr std::uint16_t kNowhere = 65'535;       // outside the map, or not finite
 constexpr double kLastPlace = 65'534.0;
 
 double entry(const Eigen::VectorXd& values, Eigen::Index index) {
@@ -42,7 +42,7 @@ class EpisodeData {
         parts_(view.parts()),
         horizon_(certified_stages(parts_)) {}
 
-  /// What is known of a system whatever its states.
+  /// The data that exist for any system.
   [[nodiscard]] Json periods() const {
     Json json = {{"period", trace_.scenario.time_step},
                  {"steps", trace_.steps.size()},
@@ -69,7 +69,7 @@ class EpisodeData {
     return json;
   }
 
-  /// What lies in the plane of `map`.
+  /// The data in the plane of `map`.
   [[nodiscard]] Json plane(const PlaneMap& map) const {
     const MapView view = map_view(map);
     Json json = {{"xLeft", view.x_left}, {"yTop", view.y_top},         {"scale", view.scale},
@@ -91,7 +91,7 @@ class EpisodeData {
 
   [[nodiscard]] std::size_t stages() const { return static_cast<std::size_t>(horizon_) + 1; }
 
-  /// Of the states at the control instants, and of the last one.
+  /// Clearances of the states at the control instants, and of the final state.
   [[nodiscard]] std::string clearances() const {
     std::vector<double> values(view_.clearances().begin(), view_.clearances().end());
     values.resize(trace_.steps.size() + 1, kNotANumber);
@@ -178,7 +178,7 @@ class EpisodeData {
     return packed_floats(values);
   }
 
-  /// Where the model without noise would be at the end of each period.
+  /// The noise-free model's state at the end of each period.
   [[nodiscard]] std::string predicted() const {
     std::vector<double> values;
     for (const StepRecord& step : trace_.steps) {
@@ -240,13 +240,13 @@ class EpisodeData {
     return 1 + count / kMostParticles;
   }
 
-  /// Places in the shown part of the plane in 65,535ths of it, shares of the weight as their roots,
-  /// of which 1 is the heaviest of a stage, in 255ths.
+  /// Positions within the shown part of the plane in 65,535ths; weights as square roots of their
+  /// ratio to the heaviest of the stage, in 255ths.
   [[nodiscard]] Json particles(const PlaneMap& map) const {
     const MapRectangle area = map.area.value_or(map_area(map));
     const auto place = [](double value, double lower, double upper) {
       const double share = (value - lower) / (upper - lower);
-      const bool shown = share >= 0.0 && share <= 1.0;  // false for what is not a number
+      const bool shown = share >= 0.0 && share <= 1.0;  // false for NaN
       return shown ? static_cast<std::uint16_t>(std::lround(kLastPlace * share)) : kNowhere;
     };
     const auto every = static_cast<Eigen::Index>(stride());

@@ -19,7 +19,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr int kSnapshotPeriod = 10;  // steps from one snapshot to the next, at least
+constexpr int kSnapshotPeriod = 10;  // least number of steps from one snapshot to the next
 constexpr int kMostSnapshots = 20;
 
 std::string words_of(const models::Coordinate& state) {
@@ -28,7 +28,7 @@ std::string words_of(const models::Coordinate& state) {
   return words;
 }
 
-// What the axes are: "Map", or e.g. "Position and pole angle".
+// The map's title by its axes: "Map", or e.g. "Position and pole angle".
 std::string map_words(const models::SystemDescription& system) {
   const MapAxes axes = map_axes(system).value();
   if (axes.is_plane) return "Map";
@@ -47,7 +47,7 @@ class EpisodeMap {
     EpisodeMaps maps{.drive = ground(), .ground = ground()};
     maps.drive.movers = driven_ways(view_, DrivenObstacles(trace_));
     maps.drive.paths.push_back(driven_path());
-    // The axes are about the drive: a prediction that runs away does not make it small.
+    // The axes are set by the drive, so that a diverging prediction does not shrink it.
     maps.drive.area = map_area(maps.drive);
     maps.ground.area = maps.drive.area;
     add_waypoints(maps.drive);
@@ -84,7 +84,7 @@ class EpisodeMap {
     return path;
   }
 
-  /// How long each lap took, at the line.
+  /// Labels the line with the time of each lap.
   void add_laps(PlaneMap& map) const {
     const std::optional<Laps> laps = laps_of(trace_);
     if (!laps || laps->times.empty()) return;
@@ -98,7 +98,7 @@ class EpisodeMap {
     map.labels.push_back({.text = text, .at = {.x = line.x(), .y = line.y()}});
   }
 
-  /// In which order waypoints are driven to, and when those that were passed were.
+  /// Labels waypoints with their order, and with the time if passed.
   void add_waypoints(PlaneMap& map) const {
     const std::optional<WaypointTimes> passed = waypoint_times(trace_);
     if (!passed) return;
@@ -115,7 +115,7 @@ class EpisodeMap {
     }
   }
 
-  /// At each snapshot, and where the drive ended.
+  /// Adds the vehicle's body at each snapshot, and where the drive ended.
   void add_bodies(PlaneMap& map) const {
     const controller::Body& body = trace_.scenario.safe_set.body;
     if (body.is_point()) return;
@@ -175,7 +175,7 @@ class EpisodeMap {
     return plan;
   }
 
-  /// Beliefs lie above predictions, the driven path above the plans.
+  /// Draws beliefs above predictions, and the driven path above the plans.
   void add_snapshots(PlaneMap& map) const {
     const std::vector<const StepRecord*> steps = snapshot_steps();
     const std::string last_stage =

@@ -1,5 +1,4 @@
-// The map of an episode: safe set, target, driven path, and where the model's state was thought to
-// be.
+// The map of an episode: safe set, target, driven path, and beliefs about the model's state.
 #pragma once
 
 #include <optional>
@@ -11,13 +10,14 @@
 namespace qsmpc::harness {
 
 struct EpisodeMaps {
-  PlaneMap drive;   ///< all of the drive
-  PlaneMap ground;  ///< what stands still in it, and the part of the plane that it shows
-  /// Of a drive along a path: its line by the speed, and by the certified risk of the next state.
+  PlaneMap drive;   ///< the whole drive
+  PlaneMap ground;  ///< its static content, and the part of the plane that it shows
+  /// For a drive along a path: its line coloured by speed, and by the certified risk of the next
+  /// state.
   std::vector<PlaneMap> coloured{};
 };
 
-/// None for a system without a position in the plane.
+/// The maps of an episode; nothing for a system without a position in the plane.
 [[nodiscard]] std::optional<EpisodeMaps> episode_maps(const EpisodeView& view);
 
 }  // namespace qsmpc::harness

@@ -167,7 +167,8 @@ std::string columns(const std::string& left, const std::string& right) {
       left, right);
 }
 
-/// What shows the drive stands on top, side by side; what explains it below, in both columns.
+/// Views of the drive come first, side by side; charts that explain it follow below, in both
+/// columns.
 std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeScene& scene,
                   const EpisodePageOptions& options) {
   const Trace& trace = view.trace();
@@ -218,7 +219,7 @@ std::string ending(const Trace& trace) {
 }  // namespace
 
 std::string episode_page(const EpisodeView& view, const EpisodePageOptions& options) {
-  // First what there is to show, then the page about it.
+  // First compute the content, then assemble the page.
   const Trace& trace = view.trace();
   const bool moves = !trace.steps.empty();
   const KeyFigures figures = key_figures(view);
@@ -230,7 +231,8 @@ std::string episode_page(const EpisodeView& view, const EpisodePageOptions& opti
                                                        .video_from = options.video_from,
                                                        .video_speed = options.video_speed})
                                  : std::string();
-  // Of a system without a place in the plane the map is of two of its states, and no ground.
+  // For a system without a position in the plane, the map shows two of its states and is not a
+  // ground.
   const bool in_plane = has_position(view.system());
   const EpisodeScene scene = episode_scene(view, in_plane ? ground : nullptr);
 

@@ -26,15 +26,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostPlacements = 20'000;  // of a page: some 0.75 MB as text
-constexpr double kTimeTolerance = 1e-9;          // s, of samples before and after a jump
+constexpr std::size_t kMostPlacements = 20'000;  // per page: about 0.75 MB as text
+constexpr double kTimeTolerance = 1e-9;          // between samples before and after a jump, s
 
 struct TimedParts {
   double time = 0.0;
   std::vector<Placement> parts;
 };
 
-/// `place` moved by `share` of the way that leads from `before` to `after`.
+/// `place` moved by the fraction `share` of the motion from `before` to `after`.
 Placement moved(const Placement& place, double share, const Placement& before,
                 const Placement& after) {
   const Eigen::Quaterniond turn = after.rotation * before.rotation.conjugate();
@@ -42,7 +42,7 @@ Placement moved(const Placement& place, double share, const Placement& before,
           Eigen::Quaterniond::Identity().slerp(share, turn) * place.rotation};
 }
 
-/// x and y in turn along the circle.
+/// Points along the circle, x and y alternating.
 std::vector<double> points_about(const MapCircle& circle) {
   constexpr int kSides = 48;
   std::vector<double> points;
@@ -54,7 +54,7 @@ std::vector<double> points_about(const MapCircle& circle) {
   return points;
 }
 
-/// Spreads the jump at the end of each period over all of it.
+/// Spreads the jump at the end of each period over the whole period.
 class SmoothMotion {
  public:
   explicit SmoothMotion(const Trace& trace) : period_(trace.scenario.time_step) {}
@@ -65,7 +65,7 @@ class SmoothMotion {
     open_.push_back(std::move(sample));
   }
 
-  /// The samples; the object is of no use afterwards.
+  /// Returns the samples; the object must not be used afterwards.
   [[nodiscard]] std::vector<TimedParts> take() {
     // The last period of a killed episode has no end.
     std::ranges::move(open_, std::back_inserter(samples_));
@@ -81,7 +81,7 @@ class SmoothMotion {
         sample.parts[part] = moved(sample.parts[part], share, last.parts[part], after[part]);
       }
     }
-    open_.pop_back();  // what follows begins where it ends
+    open_.pop_back();  // the next period begins where this one ends
     std::ranges::move(open_, std::back_inserter(samples_));
     open_.clear();
   }
@@ -93,8 +93,8 @@ class SmoothMotion {
 
 class SceneData {
  public:
-  /// `joints`: of an episode without motion of a simulator, the vehicle's; nothing where it is
-  /// moved as a whole.
+  /// `joints`: the vehicle's joints for an episode without a simulator's motion; nothing if the
+  /// vehicle moves as a whole.
   SceneData(const EpisodeView& view, VehicleShapes& vehicle, const std::optional<JointPose>& joints)
       : view_(view), vehicle_(vehicle), joints_(joints) {}
 
@@ -169,7 +169,7 @@ class SceneData {
     json["places"] = packed_floats(places);
   }
 
-  /// Every n-th, so that the page holds them, and the last one.
+  /// Every n-th sample, so that they fit into the page, and the last one.
   [[nodiscard]] std::vector<TimedParts> samples() {
     SmoothMotion motion(view_.trace());
     for (const MotionSample& sample : view_.trace().motion) {
@@ -197,7 +197,7 @@ class SceneData {
            std::ranges::all_of(qpos, [](double value) { return std::isfinite(value); });
   }
 
-  /// x from and to, y from and to; null for what is not finite.
+  /// [x lower, x upper, y lower, y upper]; null for non-finite values.
   static Json of_rectangle(const MapRectangle& area) {
     Json json = Json::array();
     for (const double side : {area.x_lower, area.x_upper, area.y_lower, area.y_upper}) {
@@ -250,14 +250,14 @@ class SceneData {
   const std::optional<JointPose>& joints_;
 };
 
-/// Whether there is motion of another number of coordinates than `vehicle` has.
+/// Whether some motion has a number of coordinates other than that of `vehicle`.
 bool is_of_another(const Trace& trace, const VehicleShapes& vehicle) {
   return std::ranges::any_of(trace.motion, [&](const MotionSample& sample) {
     return !sample.qpos.empty() && sample.qpos.size() != vehicle.coordinate_count();
   });
 }
 
-/// What a reader has to know of what is drawn.
+/// What the reader has to know about the drawing.
 std::string note_of(const Trace& trace, const VehicleShapes& vehicle) {
   std::string note = vehicle_change(trace);
   if (vehicle.boxed() == 0) return note;

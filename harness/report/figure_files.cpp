@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view kInputTitle = "Input: ";
 
-/// Of figures with a file name of their own, e.g. "w2.svg".
+/// Converts figures that already have a file name, e.g. "w2.svg".
 template <class Figure>
 std::vector<FigureFile> named_by_file(const std::vector<Figure>& figures) {
   std::vector<FigureFile> files;
@@ -34,7 +34,7 @@ std::vector<FigureFile> named_by_file(const std::vector<Figure>& figures) {
   return files;
 }
 
-/// A figure's name that no other one has.
+/// A figure's name that is still unused.
 std::string free_name(const std::vector<FigureFile>& figures, const std::string& name) {
   std::string free = name;
   for (int n = 2; std::ranges::find(figures, free, &FigureFile::name) != figures.end(); ++n) {
@@ -43,7 +43,7 @@ std::string free_name(const std::vector<FigureFile>& figures, const std::string&
   return free;
 }
 
-/// How much of `title` says what is drawn; the rest says how.
+/// Length of the part of `title` that says what is drawn; the rest says how.
 std::size_t first_words(std::string_view title) {
   std::size_t end = title.size();
   for (const std::string_view rest : {":", ",", " (", " at ", " of ", " against "}) {
@@ -61,7 +61,7 @@ std::string note_of(const Panel& panel) {
   return map != nullptr ? map_note(*map) : std::get<Chart>(panel).note;
 }
 
-/// A paragraph a figure, with a line for each panel.
+/// One paragraph per figure, with one line per panel.
 std::string captions(const std::vector<FigureFile>& figures) {
   std::string text;
   for (const FigureFile& figure : figures) {

@@ -13,36 +13,36 @@
 
 namespace qsmpc::harness {
 
-/// Where figures stand within a folder.
+/// The subfolder of the figures.
 inline constexpr const char* kFigureFolder = "figures";
 
-/// Panels that stand together.
+/// Panels shown together.
 struct FigureFile {
-  std::string name;  ///< of its files, without what follows the dot
+  std::string name;  ///< of its files, without the extension
   std::vector<Panel> panels;
 };
 
-/// "map", of a system with a position in the plane, and each chart along the drive, named by the
-/// first words of its title: "certificates", "clearance", "input-yaw-rate",
-/// "solve-time", "expected-cost", "error-budget", …
+/// "map", for a system with a position in the plane, and each chart along the drive, named after
+/// the first words of its title: "certificates", "clearance", "input-yaw-rate", "solve-time",
+/// "expected-cost", "error-budget", …
 [[nodiscard]] std::vector<FigureFile> episode_figures(const EpisodeView& view);
 
 /// "residuals", "divergence", "w2", "certificates".
 [[nodiscard]] std::vector<FigureFile> figures_of(const Comparison& comparison);
 
-/// "reliability", "outcomes", "map" of the drives where the store has their paths, "distributions"
-/// where they differ, "differences" where variants are compared.
+/// "reliability", "outcomes", "map" of the drives if the store has their paths, "distributions" if
+/// they differ, "differences" if variants are compared.
 [[nodiscard]] std::vector<FigureFile> figures_of(const CampaignStatistics& statistics);
 
-/// Writes each as SVG and PDF, set in `style`, into `folder`/figures, which is made if need be, and
-/// captions.txt: the titles and notes of all panels. None has its name before all are written.
-/// Returns their paths. Throws IoError.
+/// Writes each as SVG and PDF in `style` into `folder`/figures, which is created if necessary,
+/// together with captions.txt: the titles and notes of all panels. No file gets its final name
+/// before all are written. Returns their paths. Throws IoError.
 std::vector<std::string> write_figures(const std::vector<FigureFile>& figures,
                                        const std::string& folder, const FigureStyle& style = {});
 
 /// The name of a figure with the title `title`: its first words, up to a colon, a comma, a bracket,
-/// "at", "of" or "against" (of "Input: …", all of it), in lower case, with a hyphen for all that is
-/// no letter or digit.
+/// "at", "of" or "against" (for "Input: …", the whole title), in lower case, with hyphens in place
+/// of everything but letters and digits.
 [[nodiscard]] std::string figure_name(const std::string& title);
 
 }  // namespace qsmpc::harness

@@ -64,7 +64,7 @@ Tile time_tile(const Summary& summary) {
                                          : Verdict::kGood};
 }
 
-/// Of a drive along a path.
+/// The tile of a drive along a path.
 Tile path_tile(const EpisodeView& view) {
   const Summary& summary = view.summary();
   const double length = view.scenario().target.course->path->length();
@@ -81,7 +81,7 @@ Tile path_tile(const EpisodeView& view) {
   return tile;
 }
 
-/// Of a drive over waypoints.
+/// The tile of a drive over waypoints.
 Tile waypoints_tile(const WaypointTimes& passed) {
   Tile tile{.name = "Waypoints",
             .value = fmt::format("{} of {}", passed.times.size(), passed.wanted),
@@ -106,7 +106,7 @@ Tile unsafe_tile(const EpisodeView& view) {
           .verdict = verdict};
 }
 
-/// At the simulator's steps between the control instants, where they are known.
+/// Whether the simulator's steps between the control instants were safe, if known.
 Tile between_tile(const Summary& summary) {
   const bool unsafe = summary.unsafe_between.value_or(false);
   return {.name = "Unsafe between control instants",
@@ -139,7 +139,7 @@ Tile clearance_tile(const EpisodeView& view) {
   return tile;
 }
 
-/// A tile of an upper bound of a probability.
+/// The tile of an upper bound of a probability.
 Tile bound_tile(const Summary& summary, const std::string& name, double bound,
                 const std::string& hint) {
   Tile tile{.name = name, .value = kNone, .hint = hint};
@@ -155,7 +155,7 @@ Tile bound_tile(const Summary& summary, const std::string& name, double bound,
   return tile;
 }
 
-/// What is certified, against a limit that the scenario sets.
+/// The tile of a certified value against the scenario's limit.
 Tile limit_tile(const Summary& summary, const std::string& name, const CertifiedRisk& risk,
                 const std::string& hint) {
   Tile tile{.name = name,
@@ -302,7 +302,7 @@ std::string outcome_html(const EpisodeView& view) {
   return html + "</section>\n";
 }
 
-/// How many tiles a row of a wide page has: such that the last row is at least half full.
+/// Number of tiles per row of a wide page, such that the last row is at least half full.
 std::size_t tile_columns(std::size_t tiles) {
   constexpr std::array<std::size_t, 3> kColumns{6, 5, 7};
   for (const std::size_t columns : kColumns) {
@@ -343,7 +343,7 @@ std::string tiles_html(const EpisodeView& view) {
   return html + "</dl>\n";
 }
 
-/// Whether all that the plant adds to the model in a period is rounding.
+/// Whether everything that the plant adds to the model in a period is rounding.
 bool is_the_model(const EpisodeView& view) {
   const Eigen::VectorXd magnitude = view.states().cwiseAbs().rowwise().maxCoeff();
   const Eigen::VectorXd& rmse = view.summary().mismatch_rmse;

@@ -1,4 +1,4 @@
-// The numbers that an episode is judged by, as HTML that says what each of them is.
+// The key figures of an episode as HTML, with an explanation of each.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 namespace qsmpc::harness {
 
 struct KeyFigures {
-  std::string outcome;   ///< how the episode ended, with the simulator's words where it broke
+  std::string outcome;   ///< how the episode ended, with the simulator's message if it failed
   std::string tiles;     ///< the key numbers as a list
-  std::string mismatch;  ///< the plant's one-step mismatch as a table, a state a row
+  std::string mismatch;  ///< the plant's one-step mismatch as a table, one row per state
 };
 
 [[nodiscard]] KeyFigures key_figures(const EpisodeView& view);

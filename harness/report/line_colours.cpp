@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// m/s, by period; not a number for one whose end is not known.
+/// Speeds by period, m/s; NaN for a period whose end is not known.
 std::vector<double> speeds_of(const Trace& trace) {
   const int x = trace.system.position_x;
   const int y = trace.system.position_y;
@@ -27,7 +27,7 @@ std::vector<double> speeds_of(const Trace& trace) {
   return speeds;
 }
 
-/// Least and largest of what is finite.
+/// Minimum and maximum of the finite values.
 std::pair<double, double> range_of(const std::vector<double>& values) {
   double least = kInfinity;
   double most = -kInfinity;
@@ -94,7 +94,7 @@ std::vector<MapPath> coloured_line(const LineColours& colours,
     runs.back().points.push_back(places[k + 1]);
     last = now;
   }
-  // In the legend from little to much.
+  // From low to high in the legend.
   std::ranges::stable_sort(runs, {}, [](const MapPath& run) { return run.colour; });
   return runs;
 }

@@ -15,11 +15,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMostStages = 6;                 // of a forecast
-constexpr std::size_t kNumbers = 5;            // of a place: x, y, xx, xy, yy
-constexpr std::size_t kMostNumbers = 400'000;  // of a page: some 2 MB as text
+constexpr int kMostStages = 6;                 // per forecast
+constexpr std::size_t kNumbers = 5;            // per place: x, y, xx, xy, yy
+constexpr std::size_t kMostNumbers = 400'000;  // per page: about 2 MB as text
 
-/// How many ways each obstacle may intend.
+/// Number of ways that each obstacle may intend to take.
 std::vector<std::size_t> way_counts(const Scenario& scenario) {
   std::vector<std::size_t> counts;
   for (const controller::Obstacle* one : controller::moving_obstacles(scenario.safe_set)) {
@@ -28,7 +28,7 @@ std::vector<std::size_t> way_counts(const Scenario& scenario) {
   return counts;
 }
 
-/// The stages that there is room for.
+/// The stages that fit into the page.
 std::vector<int> stages_of(const EpisodeView& view, std::size_t ways) {
   const int horizon = view.parts().stages;
   const std::size_t of_stage =
@@ -38,7 +38,7 @@ std::vector<int> stages_of(const EpisodeView& view, std::size_t ways) {
   return spread_stages(horizon, most);
 }
 
-/// Outlines about the middle of each as it is written.
+/// Outlines relative to each obstacle's centre, as in the scenario.
 Json outlines(const DrivenObstacles& others) {
   Json json = Json::array();
   for (std::size_t n = 0; n < others.count(); ++n) {
@@ -53,7 +53,8 @@ Json outlines(const DrivenObstacles& others) {
   return json;
 }
 
-/// Of the middles, and the turns. What is not known of the end stands where it was last.
+/// Poses as positions of the centres, and rotations. Obstacles whose final pose is unknown stay at
+/// their last one.
 std::string poses_of(const DrivenObstacles& others, std::size_t instants) {
   std::vector<double> values;
   for (std::size_t k = 0; k < instants; ++k) {
@@ -67,7 +68,7 @@ std::string poses_of(const DrivenObstacles& others, std::size_t instants) {
   return packed_floats(values);
 }
 
-/// One weight a period and way, and one place a period, way and stage.
+/// One weight per period and way, and one place per period, way and stage.
 struct ForecastNumbers {
   std::vector<double> weights;
   std::vector<double> places;

@@ -1,4 +1,4 @@
-// The obstacles that move, as the scripts of an episode's page have them.
+// The moving obstacles as data for the scripts of an episode's page.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,8 +8,8 @@
 
 namespace qsmpc::harness {
 
-/// web/data.js says what each number means. Of very many forecasts fewer stages are left, down to
-/// the first and the last, and beyond that none: then "stages" is empty.
+/// web/data.js documents the meaning of each number. If there are very many forecasts, fewer stages
+/// are kept, down to the first and the last, and beyond that none: then "stages" is empty.
 [[nodiscard]] nlohmann::ordered_json moving_data(const EpisodeView& view,
                                                  const DrivenObstacles& others);
 

@@ -1,5 +1,5 @@
-// Long rows of numbers for a page's scripts: little-endian binary as base64, a third of their size
-// as text.
+// Long rows of numbers for a page's scripts: little-endian binary as base64, a third of the size of
+// text.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace qsmpc::harness {
 
-/// As 32-bit floating-point numbers, of which NaN stands for "none". What is too large becomes an
-/// infinity.
+/// Packs 32-bit floating-point numbers, where NaN stands for "none". Values out of range become
+/// infinite.
 [[nodiscard]] std::string packed_floats(const std::vector<double>& values);
 
-/// As 16-bit and 8-bit numbers without a sign.
+/// Pack unsigned 16-bit and 8-bit numbers.
 [[nodiscard]] std::string packed_words(const std::vector<std::uint16_t>& values);
 [[nodiscard]] std::string packed_bytes(const std::vector<std::uint8_t>& values);
 

@@ -17,7 +17,7 @@ struct Script {
   std::string_view sha256;
 };
 
-/// In the order in which they run: the scene's waits for what the other one tells it.
+/// The scripts in execution order: that of the scene waits for calls from the other.
 std::vector<Script> scripts_of(PageKind kind) {
   std::vector<Script> scripts;
   if (kind == PageKind::kEpisodeScene) {

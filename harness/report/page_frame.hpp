@@ -1,4 +1,4 @@
-// What every page begins and ends with.
+// The beginning and end of every page.
 #pragma once
 
 #include <string>
@@ -6,21 +6,21 @@
 namespace qsmpc::harness {
 
 enum class PageKind {
-  kPlain,         ///< it runs nothing
-  kTables,        ///< the same, with the style of tables, on paper too
-  kEpisode,       ///< it ends with the scripts of an episode's page
-  kEpisodeScene,  ///< with these and the one of its view in three dimensions
+  kPlain,         ///< runs no script
+  kTables,        ///< as kPlain, with the style of tables, also in print
+  kEpisode,       ///< ends with the scripts of an episode's page
+  kEpisodeScene,  ///< ends with these and that of its three-dimensional view
 };
 
 struct PageFrame {
   std::string title;
-  std::string version;  ///< that made the page
+  std::string version;  ///< that generated the page
   PageKind kind = PageKind::kPlain;
 };
 
-/// The page about `body`, which is HTML: title, style, and a policy by which the page loads nothing
-/// but a video beside it and uses no style and no script but the one that it came with; at its end
-/// the scripts, and a footer that says which version made it.
+/// The page around `body`, which is HTML: title, style, and a policy that lets the page load only a
+/// video beside it and use only its own style and scripts; at its end the scripts, and a footer
+/// with the version that made it.
 [[nodiscard]] std::string framed_page(const PageFrame& frame, const std::string& body);
 
 }  // namespace qsmpc::harness

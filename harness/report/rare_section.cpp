@@ -16,9 +16,9 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kRareTitleLimit = 44;   // of a variant in a title
-constexpr std::size_t kMostRareCommands = 5;  // of a variant
-constexpr double kMostRareGap = 0.3;          // of a decade below the smallest estimate
+constexpr std::size_t kRareTitleLimit = 44;   // of a variant's name in a title
+constexpr std::size_t kMostRareCommands = 5;  // per variant
+constexpr double kMostRareGap = 0.3;          // of a decade, below the smallest estimate
 constexpr const char* kRareNote =
     "The probability that a drive is unsafe at some control instant, estimated by splitting: "
     "drives "
@@ -65,7 +65,7 @@ Chart rare_chart(const VariantStatistics& variant, const RareStatistics& rare) {
     if (rare.runs[n].probability == 0.0) chart.y_has_zero = true;
   }
   chart.x_includes = {0.0, static_cast<double>(rare.runs.size() + 1)};
-  // The limits stand behind the runs.
+  // The limits follow after the runs.
   Series mean{.name = "mean, 99 % limits", .colour = kVermilion, .mark = Mark::kPoints};
   mean.x = {static_cast<double>(rare.runs.size() + 1)};
   mean.y = {rare.probability};
@@ -128,7 +128,7 @@ std::string rare_rows_html(const CampaignStatistics& statistics) {
   return table_html(table);
 }
 
-/// Commands that drive again what the runs found, one a run.
+/// Commands that replay the unsafe drives found, one per run.
 std::string rare_commands(const CampaignStatistics& statistics) {
   std::string items;
   for (const VariantStatistics& variant : statistics.variants) {

@@ -1,4 +1,4 @@
-// What a campaign says of rare outcomes, as figures and as a section of its page.
+// A campaign's results on rare outcomes, as figures and as a section of its page.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace qsmpc::harness {
 
-/// One chart a variant that was looked for rare outcomes in: the estimate of each run, with their
-/// mean, its limits and what was certified.
+/// One chart for each variant that was searched for rare outcomes: the estimate of each run, their
+/// mean, its limits and the certified value.
 [[nodiscard]] std::vector<Chart> rare_charts(const CampaignStatistics& statistics);
 
-/// Verdict, table, charts and commands that drive unsafe drives again; empty where the campaign
-/// does not look for rare outcomes.
+/// Verdict, table, charts and commands that replay unsafe drives; empty if the campaign does not
+/// look for rare outcomes.
 [[nodiscard]] std::string rare_section(const CampaignStatistics& statistics);
 
 }  // namespace qsmpc::harness

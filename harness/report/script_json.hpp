@@ -1,4 +1,4 @@
-// Data of a page for its scripts.
+// Data embedded in a page for its scripts.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace qsmpc::harness {
 
-/// `json` on one line, safe inside of a <script type="application/json">: nothing in it can end the
-/// element that it stands in.
+/// `json` on one line, safe inside a <script type="application/json">: nothing in it can end the
+/// enclosing element.
 [[nodiscard]] std::string script_json(const nlohmann::ordered_json& json);
 
 }  // namespace qsmpc::harness

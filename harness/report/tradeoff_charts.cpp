@@ -18,9 +18,10 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kLabelLimit = 18;       // of settings beside a point
-constexpr std::size_t kPanelTitleLimit = 40;  // of a scenario, and of a plant
-constexpr double kBelowOneDrive = 0.5;        // of the rate of one drive: where the axis begins
+constexpr std::size_t kLabelLimit = 18;       // of the settings beside a point
+constexpr std::size_t kPanelTitleLimit = 40;  // of a scenario's name, and of a plant's
+constexpr double kBelowOneDrive = 0.5;        // the axis begins at this fraction of the rate of one
+                                              // drive
 constexpr const char* kTradeoffNote =
     "Left and down is better. On the left what was observed; beside it what was certified, which "
     "tells variants apart whose drives were never unsafe: the mean over drives of the sum of "
@@ -32,7 +33,7 @@ constexpr const char* kTradeoffNote =
     "the drives that reached the target, since those of other drives do not compare: a variant "
     "that reaches it less often may look cheaper.";
 
-/// What stands for the risk of a variant.
+/// Which value represents the risk of a variant.
 enum class RiskOf { kObserved, kCertified };
 
 std::string panel_title(const TradeoffPanel& panel, RiskOf risk) {
@@ -79,7 +80,7 @@ std::string panel_in_words(const CampaignStatistics& statistics, const TradeoffP
   return words;
 }
 
-/// The power of ten below half of the rate of one unsafe drive: smaller ones cannot be observed.
+/// The power of ten below half of the rate of one unsafe drive; smaller rates cannot be observed.
 double least_rate(const CampaignStatistics& statistics, const TradeoffPanel& panel) {
   std::int64_t most = 1;
   for (const TradeoffFamily& family : panel.families) {
@@ -99,9 +100,10 @@ std::string arrivals(const VariantStatistics& variant) {
   return text;
 }
 
-/// How many drives the means are of; a point of none is not drawn. Empty before the first drive.
+/// States how many drives the means are over; a point without drives is not drawn. Empty before the
+/// first drive.
 std::string panel_note(const CampaignStatistics& statistics, const TradeoffPanel& panel) {
-  std::set<std::size_t> seen;  // variants; one may be of several families
+  std::set<std::size_t> seen;  // variants; one may belong to several families
   std::int64_t done = 0;
   std::string few;
   for (const TradeoffFamily& family : panel.families) {
@@ -117,7 +119,8 @@ std::string panel_note(const CampaignStatistics& statistics, const TradeoffPanel
                      : "All drives reached the target, except: " + few + ".";
 }
 
-/// Which of the panel's points are certified by what is no bound; empty where all are bounds.
+/// States which of the panel's points have certificates that are not bounds; empty if all are
+/// bounds.
 std::string no_bound_note(const CampaignStatistics& statistics, const TradeoffPanel& panel) {
   std::set<std::size_t> seen;
   std::string names;

@@ -55,7 +55,7 @@ void add_beliefs(const Sample& sample, const models::SystemDescription& system, 
   }
 }
 
-/// One series a sample, of its first drive: y of period k at time k.
+/// One series per sample, of its first drive: the value of period k at the time of period k.
 std::vector<Series> first_drives(
     const std::vector<NamedSample>& samples, Mark mark,
     const std::function<std::vector<double>(const EpisodeDigest&)>& values) {
@@ -78,7 +78,7 @@ std::vector<double> row_of(const Eigen::MatrixXd& matrix, Eigen::Index row) {
   return values;
 }
 
-/// The mean of period k over those drives that had one.
+/// The mean for each period k over the drives that have it.
 Series mean_series(const NamedSample& named, std::vector<double> EpisodeDigest::*values) {
   Series series{.name = named.name};
   for (std::size_t k = 0;; ++k) {

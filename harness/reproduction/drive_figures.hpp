@@ -1,4 +1,4 @@
-// Drives in closed loop as figures: where they went, what was done, what was certified.
+// Figures of closed-loop drives: paths, inputs and certificates.
 #pragma once
 
 #include <string>
@@ -10,21 +10,21 @@
 
 namespace qsmpc::harness {
 
-/// Drives under the name that a legend gives them.
+/// Drives with their name in a legend.
 struct NamedSample {
   std::string name;
   const Sample* sample = nullptr;
 };
 
-/// All drives of `sample`, the first of them in full, with its beliefs and where the end of its
-/// plans was expected. For a system with a position.
+/// All drives of `sample`. The first is drawn in full, with its beliefs and the expected end of its
+/// plans. For a system with a position.
 [[nodiscard]] PlaneMap drive_map(const std::string& title, const Sample& sample);
 
-/// What the ellipses on it are.
+/// Explains the ellipses on that map.
 inline constexpr const char* kMapCaption =
     "Of the first drive, the belief and where the end of the plan was expected, every 12 periods.";
 
-/// Each input of the first drives over time, within its bounds; of the same system.
+/// Each input of the first drives over time, within its bounds. All samples are of the same system.
 [[nodiscard]] std::vector<Chart> input_charts(const std::vector<NamedSample>& samples);
 
 /// Each state of the first drives over time.
@@ -33,14 +33,14 @@ inline constexpr const char* kMapCaption =
 /// The expected cost of the first drives' plans over time.
 [[nodiscard]] Chart cost_chart(const std::vector<NamedSample>& samples);
 
-/// Probabilities of the unsafe set at the next step, over time, of the first drive: the published
-/// way and C1 from the plain and from the compressed measure, and the certificate in force.
+/// Probabilities of the unsafe set at the next step over time, for the first drive: the published
+/// value and C1, each from the plain and from the compressed measure, and the certificate in force.
 [[nodiscard]] Chart risk_chart(const std::string& title, const Sample& sample);
 
-/// The certificate in force of the next step, over time: mean over the drives under way.
+/// The certificate in force of the next step over time: mean over the drives still running.
 [[nodiscard]] Chart certified_chart(const std::vector<NamedSample>& samples);
 
-/// The published probability of the next step, over time: mean over the drives under way.
+/// The published probability of the next step over time: mean over the drives still running.
 [[nodiscard]] Chart published_chart(const std::vector<NamedSample>& samples);
 
 }  // namespace qsmpc::harness

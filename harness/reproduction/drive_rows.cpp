@@ -12,8 +12,8 @@
 namespace qsmpc::harness {
 namespace {
 
-/// `samples` without the seeds of which one has no number: drives that ended before their first
-/// period have none.
+/// `samples` without the seeds for which one of them has no number: a drive that ended before its
+/// first period has none.
 std::vector<std::vector<double>> complete(const std::vector<std::vector<double>>& samples) {
   std::vector<std::vector<double>> kept(samples.size());
   for (std::size_t n = 0; n < samples.front().size(); ++n) {
@@ -32,7 +32,7 @@ std::vector<double> differences(const std::vector<double>& first,
   return result;
 }
 
-/// Of those episodes that have the number.
+/// The median over the episodes that have the number.
 double median_of_episodes(const std::vector<double>& numbers) {
   return median_of(complete({numbers}).front());
 }

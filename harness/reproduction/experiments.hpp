@@ -1,5 +1,5 @@
-// The experiments one by one, as the table in experiment.cpp lists them. Each fills the rows,
-// claims, figures and remarks of a result; name, title and time are filled in by who calls it.
+// The experiments one by one, as the table in experiment.cpp lists them. Each fills in the rows,
+// claims, figures and remarks of a result; the caller fills in name, title and time.
 #pragma once
 
 #include "harness/reproduction/laboratory.hpp"
@@ -7,22 +7,22 @@
 
 namespace qsmpc::harness {
 
-/// Fig. 4-1: a belief carried along a turn, as points and as samples.
+/// Fig. 4-1: a belief propagated along a turn, as points and as samples.
 [[nodiscard]] ExperimentResult propagation_along_a_turn(Laboratory& laboratory);
 
 /// Fig. 4-2: the same with noise, with and without compression.
 [[nodiscard]] ExperimentResult propagation_with_noise(Laboratory& laboratory);
 
-/// Table 5-1 and Fig. 5-1: distances to many samples, of points and of few samples.
+/// Table 5-1 and Fig. 5-1: distances of points and of few samples to many samples.
 [[nodiscard]] ExperimentResult prediction_quality(Laboratory& laboratory);
 
-/// Algorithms 3 and 4: the published probability, what is wrong with it, and what holds.
+/// Algorithms 3 and 4: the published probability, its errors, and valid bounds.
 [[nodiscard]] ExperimentResult published_certificate(Laboratory& laboratory);
 
 /// Table 5-2 and Fig. 5-2: open and closed loop in a corridor, with the noise propagated.
 [[nodiscard]] ExperimentResult corridor_with_noise(Laboratory& laboratory);
 
-/// Table 5-3 and Fig. 5-3: the same, the noise left out of the prediction.
+/// Table 5-3 and Fig. 5-3: the same, without the noise in the prediction.
 [[nodiscard]] ExperimentResult corridor_with_unseen_noise(Laboratory& laboratory);
 
 /// Table 5-4 and Fig. 5-4: obstacles, two solvers, three numbers of points.

@@ -56,9 +56,9 @@ EpisodeDigest digest_of(const Trace& trace) {
 
 Scenario scenario_of(const Variant& variant) {
   std::vector<std::string> overrides = variant.overrides;
-  overrides.emplace_back("vehicle.footprint=point");  // the thesis knows no other
+  overrides.emplace_back("vehicle.footprint=point");  // the thesis has no other
   Scenario scenario = with_plant(load_scenario(variant.scenario, overrides), variant.plant);
-  // One thread an episode, and nothing that depends on how fast it is.
+  // One thread per episode, and no dependence on its speed.
   scenario.controller.threads = 1;
   scenario.controller.deadline = std::numeric_limits<double>::infinity();
   return scenario;

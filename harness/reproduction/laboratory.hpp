@@ -1,5 +1,5 @@
-// Where experiments are done: runs scenarios with variations, keeps what several experiments need,
-// and says how far the work is.
+// The environment of experiments: runs scenarios with variations, caches what several experiments
+// need, and reports progress.
 #pragma once
 
 #include <cstdint>
@@ -26,44 +26,45 @@ struct Variant {
 /// The scenario of `variant`. Throws InputError.
 [[nodiscard]] Scenario scenario_of(const Variant& variant);
 
-/// What is kept of an episode. A period is a column or an entry.
+/// What is kept of an episode. Each period is a column or an entry.
 struct EpisodeDigest {
   std::uint64_t seed = 0;
-  bool arrived = false;             ///< it ended at the target, safely or not
+  bool arrived = false;             ///< it ended at the target, whether safely or not
   bool unsafe = false;              ///< the true state entered the unsafe set
   double duration = 0.0;            ///< of the episode, s of simulated time
-  double optimisation_s = 0.0;      ///< wall clock of all plans: quantise … optimise
+  double optimisation_s = 0.0;      ///< wall-clock time of all plans: quantise … optimise
   double cost = 0.0;                ///< Σ ½ |x − r|²_Q + |u|²_R
   double min_clearance = 0.0;       ///< m
   StepTiming timing{};              ///< medians of the periods, ms
   std::vector<double> next_step{};  ///< certificate of the next step
-  std::vector<double> particles{};  ///< C1 of it
-  std::vector<double> published{};  ///< Algorithms 3 and 4 as printed; no bound
+  std::vector<double> particles{};  ///< C1 of the next step
+  std::vector<double> published{};  ///< Algorithms 3 and 4 as printed; not a bound
   std::vector<double> plan_risk{};  ///< certificate of the whole plan: sum of its stages', ≤ 1
   std::vector<double> costs{};      ///< expected cost of the plan
   Eigen::MatrixXd states{};         ///< true ones, state_dim x (periods + 1)
   Eigen::MatrixXd inputs{};         ///< input_dim x periods
 };
 
-/// Episodes of one variant, of the scenario's seed and those that follow.
+/// Episodes of one variant, for the scenario's seed and the following ones.
 struct Sample {
   Scenario scenario;
   std::vector<EpisodeDigest> episodes{};
   Trace first{};  ///< of the first of them
 };
 
-/// The work was given up.
+/// Thrown when the work is abandoned.
 struct Stopped {};
 
 struct LaboratoryOptions {
-  int seeds = 20;          ///< ≥ 1, episodes of a variant
-  int arrival_seeds = 50;  ///< ≥ 1, episodes where only the share that arrives is counted
-  int step_limit = 0;      ///< most periods of a drive; 0: the scenario's
-  std::int64_t truth_samples = 4'000'000;  ///< paths from which a truth is estimated
-  int threads = 0;                         ///< at most; 0: as many as the processor runs at once
-  std::function<bool()> should_stop{};     ///< asked by several threads
+  int seeds = 20;          ///< ≥ 1, episodes per variant
+  int arrival_seeds = 50;  ///< ≥ 1, episodes if only the share that arrives is counted
+  int step_limit = 0;      ///< maximum number of periods of a drive; 0: the scenario's
+  std::int64_t truth_samples = 4'000'000;  ///< number of paths for estimates of true values
+  int threads = 0;                         ///< at most; 0: as many as the processor runs
+                                           ///< concurrently
+  std::function<bool()> should_stop{};     ///< called by several threads
   std::function<void(const std::string&)>
-      on_work{};  ///< told what is done, by one thread at a time
+      on_work{};  ///< called with the current activity, by one thread at a time
 };
 
 class Laboratory {
@@ -74,16 +75,16 @@ class Laboratory {
   [[nodiscard]] int arrival_seeds() const { return options_.arrival_seeds; }
   [[nodiscard]] std::int64_t truth_samples() const { return options_.truth_samples; }
   [[nodiscard]] int threads() const { return threads_; }
-  /// What independent work is divided among.
+  /// The executor that independent work is divided among.
   [[nodiscard]] const controller::Executor& run() const { return run_; }
 
-  /// `count` episodes of `variant`, `seeds` where it is 0, driven unless they have been
-  /// before. Each runs on one thread, and
-  /// but for the timings depends on the scenario and its seed alone. The reference is valid as long
-  /// as the laboratory. Throws Stopped, and InputError for what is wrong with the variant.
+  /// `count` episodes of `variant` (`seeds` if it is 0), driven unless they have been before. Each
+  /// runs on one thread and, except for timings, depends only on the scenario and its seed. The
+  /// reference is valid as long as the laboratory. Throws Stopped, and InputError on an invalid
+  /// variant.
   const Sample& sample(const Variant& variant, int count = 0);
 
-  /// Tells what is being done. Throws Stopped if the work is to be given up.
+  /// Reports the current activity. Throws Stopped if the work is to be abandoned.
   void at_work(const std::string& what) const;
 
  private:
@@ -95,11 +96,11 @@ class Laboratory {
   std::map<std::string, Sample> samples_;
 };
 
-/// Of each episode one number.
+/// One number per episode.
 [[nodiscard]] std::vector<double> over_episodes(
     const Sample& sample, const std::function<double(const EpisodeDigest&)>& number);
 
-/// Episodes that reached the target, and of them those that never were unsafe.
+/// The number of episodes that reached the target and were never unsafe.
 [[nodiscard]] int safe_arrivals(const Sample& sample);
 
 }  // namespace qsmpc::harness

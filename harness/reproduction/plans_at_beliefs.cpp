@@ -30,7 +30,7 @@ controller::Gaussian belief_after(const EpisodeDigest& drive, Eigen::Index k,
 double simulated_risk(const controller::PredictedMotion& motion,
                       const controller::SafeSet& safe_set, std::uint64_t seed,
                       Eigen::Index period) {
-  // Another seed for every plan: drives are shorter than this many periods.
+  // A distinct seed for every plan: drives are shorter than this many periods.
   constexpr std::uint64_t kMostPeriods = 1'000'000;
   const MonteCarloOptions options{.seed = seed * kMostPeriods + static_cast<std::uint64_t>(period),
                                   .samples = kPathsAPlan,

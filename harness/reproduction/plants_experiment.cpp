@@ -1,5 +1,5 @@
-// What the thesis does not show: the systems of its appendix, and every scenario on vehicles that
-// are not the planner's model.
+// Experiments that the thesis does not show: the systems of its appendix, and every scenario on
+// vehicles that differ from the planner's model.
 
 #include <algorithm>
 #include <string>
@@ -48,7 +48,7 @@ const std::vector<PlantDrive>& drives() {
   return all;
 }
 
-/// Rows and a figure of the drives of a scenario of which nothing is published.
+/// Adds rows and a figure of the drives of a scenario without published numbers.
 void add_drive(Laboratory& laboratory, const std::string& name, const std::string& scenario,
                ExperimentResult& result) {
   const PublishedDrive column{.name = name, .variant = {.scenario = scenario}};

@@ -1,4 +1,4 @@
-// Fig. 4-1 and 4-2: what a prediction by points looks like, beside samples and without compression.
+// Fig. 4-1 and 4-2: prediction by points, compared with samples and without compression.
 
 #include <array>
 #include <chrono>
@@ -69,12 +69,12 @@ void add_turn_rows(const PredictionReport& report, const std::vector<controller:
 // ---- Fig. 4-2
 
 constexpr int kNoisyStages = 5;
-constexpr int kNoiseParts = 8;  // points that stand for the noise in Fig. 4-2
+constexpr int kNoiseParts = 8;  // points that represent the noise in Fig. 4-2
 constexpr std::int64_t kTruthSamples = 200'000;
 constexpr double kPublishedPoints = 3.28e6;
 constexpr const char* kAfterSteps = "After 5 steps";
 constexpr double kPublishedCompressed = 100.0;
-// The same for all panels of Fig. 4-2, about the 95 % ellipse.
+// Common to all panels of Fig. 4-2, around the 95 % ellipse.
 constexpr MapRectangle kCloudArea{.x_lower = -0.4, .x_upper = 1.9, .y_lower = -0.9, .y_upper = 1.0};
 
 using Clock = std::chrono::steady_clock;
@@ -83,7 +83,7 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Every point with every noise point added, stage after stage, nothing compressed (Eq. 4-5).
+/// Adds every noise point to every point, stage after stage, without compression (Eq. 4-5).
 controller::DiscreteMeasure without_compression(const PredictionReport& report,
                                                 const controller::DiscreteMeasure& noise) {
   const auto model = model_of(report.scenario);
@@ -115,7 +115,8 @@ constexpr std::array<Compressed, 3> kCompressed{{{"soft", "the thesis’s soft c
                                                  {"compressed", "hard compression"},
                                                  {"mixture", "this program’s mixture"}}};
 
-/// How much of the true law's variance `measure` has, and how far off its mean is.
+/// Adds rows for the share of the true law's variance that `measure` has, and for the error of its
+/// mean.
 void add_moment_rows(const std::string& what, const controller::DiscreteMeasure& measure,
                      const controller::DiscreteMeasure& truth, ExperimentResult& result) {
   const auto place = [&what](const char* row) {
@@ -200,7 +201,7 @@ ExperimentResult propagation_with_noise(Laboratory& laboratory) {
       kNoiseParts);
   const controller::DiscreteMeasure all = without_compression(first, noise.measure);
   const double naive_ms = milliseconds_since(start);
-  // Of so many samples the moments are known to a few per mille.
+  // From this many samples, the moments are known to a few per mille.
   const controller::DiscreteMeasure truth =
       equally_weighted(samples_of(first, {.count = kTruthSamples}, laboratory.run()).back());
   result.rows = {

@@ -13,7 +13,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Every point of `states` with every one of `noise` added (Eq. 4-5).
+/// Adds every point of `noise` to every point of `states` (Eq. 4-5).
 controller::DiscreteMeasure product_of(const controller::Points& states,
                                        const Eigen::VectorXd& weights,
                                        const controller::DiscreteMeasure& noise) {

@@ -1,8 +1,8 @@
-// The probability of the unsafe set as the thesis computes it, beside what it should be.
+// The probability of the unsafe set as the thesis computes it, compared with valid bounds.
 //
 // Algorithm 3 takes a norm over the dimensions for the distance to the unsafe set and leaves
-// obstacles out, which certifies less than the truth; Algorithm 4 spends d · m against the radius
-// where W2 asks for d² · m against its square, which is loose. Eq. 4-4 leaves the noise
+// obstacles out, which certifies less than the true probability. Algorithm 4 spends d · m against
+// the radius where W2 calls for d² · m against its square, which is loose. Eq. 4-4 leaves the noise
 // out of the radius.
 #pragma once
 
@@ -14,14 +14,14 @@
 
 namespace qsmpc::harness {
 
-/// One measure and radius, in three ways.
+/// The worst case for one measure and radius, computed in three ways.
 struct WorstCase {
   double published = 1.0;  ///< Algorithms 3 and 4 and Eq. 4-4 as printed: NOT a bound
   double distance = 1.0;   ///< Algorithm 4 with the true distance and radius: a bound
   double sound = 1.0;      ///< with the true distance and transport cost: C1
 };
 
-/// The radii of one measure: a bound of W2 between it and the law of the state, and the one that
+/// The radii of one measure: a bound of W2 between it and the law of the state, and the radius that
 /// the thesis would use (Eq. 4-4, 4-6).
 struct Radii {
   double sound = 0.0;
@@ -38,8 +38,8 @@ struct NextStepView {
   WorstCase compressed;
 };
 
-/// Of every period of `trace`: its plan is predicted again with the propagator "compressed", the
-/// thesis's, in place of the one that it was made with.
+/// The views of every period of `trace`. Its plan is predicted again with the propagator
+/// "compressed", that of the thesis, in place of the one that it was made with.
 [[nodiscard]] std::vector<NextStepView> next_step_views(const Trace& trace);
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-// Table 5-1 and Fig. 5-1: how far points and few samples are from many samples.
+// Table 5-1 and Fig. 5-1: distances of points and of few samples from many samples.
 
 #include <algorithm>
 #include <array>
@@ -50,7 +50,7 @@ double squared_distance(const controller::DiscreteMeasure& first,
   return distance * distance;
 }
 
-/// How often a comparison is made anew.
+/// Number of repetitions of a comparison.
 int repetitions(const Laboratory& laboratory) { return std::min(laboratory.seeds(), kMostRepeats); }
 
 Quality quality_with(const QualityNoise& noise, Laboratory& laboratory) {
@@ -183,7 +183,7 @@ ResultFigure quality_figure(const std::vector<Quality>& qualities) {
 
 constexpr int kDensityStage = 5;
 
-/// A sample of Fig. 5-1 under its name.
+/// A sample of Fig. 5-1 with its name.
 struct Shown {
   std::string name;
   int colour;

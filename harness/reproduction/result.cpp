@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// What /proc/cpuinfo calls the processor; "unknown" where it does not say.
+/// The processor's name in /proc/cpuinfo; "unknown" if it has none.
 std::string processor_name() {
   std::ifstream file("/proc/cpuinfo");
   const std::string key = "model name";

@@ -10,12 +10,12 @@
 namespace qsmpc::harness {
 namespace {
 
-/// The name of its row in a table.
+/// The name of the table row that `row` belongs to, with its unit.
 std::string place_name(const ResultRow& row) {
   return row.unit.empty() ? row.place->row : fmt::format("{} ({})", row.place->row, row.unit);
 }
 
-/// What there is to know of the numbers of a row, and of which columns where not of all.
+/// The notes on the numbers of a row, with the columns they apply to unless they apply to all.
 std::string notes_of(const ResultGrid& grid, const ResultGrid::Row& row) {
   std::vector<std::pair<std::string, std::vector<std::string>>> notes;
   for (std::size_t k = 0; k < grid.columns.size(); ++k) {
@@ -38,7 +38,7 @@ std::string notes_of(const ResultGrid& grid, const ResultGrid::Row& row) {
   return text;
 }
 
-/// A line of a table: what `number` says of each cell.
+/// A line of a table: `number` applied to each cell.
 template <class Number>
 GridLine line_of(const std::string& name, const ResultGrid::Row& row, const Number& number) {
   GridLine line{.name = name};

@@ -1,4 +1,4 @@
-// Tables in the shape of the thesis's own, for whatever they are printed on.
+// Tables laid out as in the thesis, independent of the output format.
 #pragma once
 
 #include <optional>
@@ -9,11 +9,11 @@
 
 namespace qsmpc::harness {
 
-/// A table of the thesis's own shape.
+/// A table laid out as in the thesis.
 struct ResultGrid {
   struct Row {
     std::string name;  ///< with the unit
-    /// One a column; nullptr where there is no such quantity.
+    /// One per column; nullptr if there is no such quantity.
     std::vector<const ResultRow*> cells{};
   };
   std::string table;
@@ -21,24 +21,24 @@ struct ResultGrid {
   std::vector<Row> rows{};
 };
 
-/// The tables that `rows` have places in, rows and columns in the order in which they come first.
-/// They point into `rows`.
+/// The tables in which `rows` have places, with rows and columns in order of first appearance. They
+/// point into `rows`.
 [[nodiscard]] std::vector<ResultGrid> result_grids(const std::vector<ResultRow>& rows);
 
-/// What stands in a cell; nothing where a value is not there.
+/// The content of a cell; nothing if there is no value.
 using GridNumber = std::optional<double>;
 
-/// A line of a printed table: a row as published, or as it is here.
+/// A line of a printed table: a row as published, or as measured here.
 struct GridLine {
   std::string name;
   bool is_published = false;
-  std::vector<std::optional<GridNumber>> numbers{};  ///< one a column; none: no such quantity
+  std::vector<std::optional<GridNumber>> numbers{};  ///< one per column; nothing: no such quantity
 };
 
-/// The lines of `grid`: each row as published, where something is, and below it as it is here.
+/// The lines of `grid`: each row as published, if anything is, and below it as measured here.
 [[nodiscard]] std::vector<GridLine> grid_lines(const ResultGrid& grid);
 
-/// What there is to know of the numbers of a row.
+/// A note on the numbers of a row.
 struct GridNote {
   std::string row;
   std::string text;

@@ -22,7 +22,7 @@ Json row_json(const std::string& experiment, const ResultRow& row) {
           {"quantity", row.quantity},
           {"unit", row.unit},
           {"published", number_json(row.published)},
-          {"here", row.here},  // null where it is not finite
+          {"here", row.here},  // null if not finite
           {"ratio", number_json(ratio_of(row))},
           {"note", row.note},
           {"place", place_json(row.place)}};

@@ -25,7 +25,7 @@ std::string contents(const Reproduction& reproduction) {
 constexpr std::string_view kTableBegin =
     "<div class=\"card scroll\" tabindex=\"0\"><table class=\"results\">\n<thead><tr>";
 
-/// A table in the shape of the thesis's own, and what there is to know of it.
+/// A table laid out as in the thesis, with its notes.
 std::string grid_html(const ResultGrid& grid) {
   std::string html(kTableBegin);
   html += fmt::format("<th class=\"text\">{}</th>", escape_html(grid.table));

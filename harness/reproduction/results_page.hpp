@@ -1,4 +1,4 @@
-// A reproduction as one HTML page: tables, claims and figures, nothing outside of it.
+// A reproduction as one self-contained HTML page: tables, claims and figures.
 #pragma once
 
 #include <string>

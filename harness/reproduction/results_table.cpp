@@ -19,14 +19,14 @@ namespace {
 constexpr std::size_t kQuantityWidth = 74;
 constexpr std::size_t kNumberWidth = 12;
 constexpr int kDigits = 4;
-constexpr std::size_t kTextWidth = 110;  // of a table on a terminal, where it can be divided
+constexpr std::size_t kTextWidth = 110;  // of a table on a terminal, if it can be divided
 constexpr std::size_t kColumnGap = 2;
 
 std::string with_unit(const ResultRow& row) {
   return row.unit.empty() ? row.quantity : fmt::format("{} ({})", row.quantity, row.unit);
 }
 
-/// Plain ASCII, so that columns line up wherever they are printed.
+/// Plain ASCII, so that columns align on any output.
 std::string plain_number(std::optional<double> value) {
   if (!value || !std::isfinite(*value)) return "-";
   return fmt::format("{:.{}g}", *value, kDigits);
@@ -36,7 +36,7 @@ std::string plain_cell(const std::optional<GridNumber>& number) {
   return number ? plain_number(*number) : std::string();
 }
 
-/// How many columns each takes on a terminal: the first of names, the others of numbers.
+/// Width in characters of each column on a terminal: the first holds names, the others numbers.
 std::vector<std::size_t> text_widths(const ResultGrid& grid, const std::vector<GridLine>& lines) {
   std::vector<std::size_t> widths{utf8_characters(grid.table)};
   for (const std::string& column : grid.columns) widths.push_back(utf8_characters(column));
@@ -49,12 +49,12 @@ std::vector<std::size_t> text_widths(const ResultGrid& grid, const std::vector<G
   return widths;
 }
 
-/// A cell of a number, its head included, at the right of its column.
+/// A number's cell, or its column's header, aligned right.
 std::string right(const std::string& text, std::size_t width) {
   return std::string(kColumnGap + width - utf8_characters(text), ' ') + text;
 }
 
-/// The table in the thesis's shape; what is too wide for a terminal goes on below.
+/// The table laid out as in the thesis; columns that do not fit a terminal continue below.
 std::string grid_text(const ResultGrid& grid) {
   const std::vector<GridLine> lines = grid_lines(grid);
   const std::vector<std::size_t> widths = text_widths(grid, lines);
@@ -132,7 +132,8 @@ std::string list_markdown(const std::vector<ResultRow>& rows) {
          text;
 }
 
-/// The columns of the thesis across, its rows down, each as published and below it as it is here.
+/// The thesis's columns across and its rows down, each row as published and, below it, as measured
+/// here.
 std::string grid_markdown(const ResultGrid& grid) {
   std::string text = fmt::format("\n| {} |", escape_markdown(grid.table));
   std::string rule = "\n| --- |";

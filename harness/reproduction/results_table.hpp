@@ -10,24 +10,24 @@
 
 namespace qsmpc::harness {
 
-/// Tables in the shape of the thesis's own, other rows beside the published values, claims and
-/// remarks, for a terminal.
+/// For a terminal: tables laid out as in the thesis, other rows beside the published values, claims
+/// and remarks.
 [[nodiscard]] std::string results_table(const Reproduction& reproduction);
 
 /// {"rows": [{"experiment", "quantity", "unit", "published", "here", "ratio", "note",
-/// "place"}, …], "claims": […], "figures": […], …}, one object, ending in a new line. What is not
-/// there is null.
+/// "place"}, …], "claims": […], "figures": […], …}, one object, ending in a newline. Missing values
+/// are null.
 [[nodiscard]] std::string results_json(const Reproduction& reproduction);
 
 /// As Markdown: rows with a place as tables, the others as a list. figures: the folder of the
-/// figures, relative to where the text will be.
+/// figures, relative to that of the text.
 [[nodiscard]] std::string results_markdown(const Reproduction& reproduction,
                                            const std::string& figures);
 
 /// "intel …, 2 cores, gcc 12.2.0; 50 seeds, 2 threads": what the numbers depend on.
 [[nodiscard]] std::string circumstances(const Reproduction& reproduction);
 
-/// A number as tables show it: up to four digits, "–" for what is not there or not finite.
+/// A number as tables show it: up to four digits, "–" if missing or not finite.
 [[nodiscard]] std::string table_number(std::optional<double> value);
 
 }  // namespace qsmpc::harness

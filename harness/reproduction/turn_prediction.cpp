@@ -9,7 +9,7 @@ namespace qsmpc::harness {
 PredictionReport on_a_turn(int stages, const std::vector<std::string>& overrides,
                            std::int64_t samples) {
   Scenario scenario = load_scenario("dubins_prediction", overrides);
-  scenario.safe_set.body.discs.clear();  // the thesis knows a point only
+  scenario.safe_set.body.discs.clear();  // the thesis only has a point
   scenario.controller.horizon = stages;
   PredictionOptions options{.inputs = Eigen::MatrixXd::Constant(1, stages, kTurnRate)};
   options.monte_carlo.samples = samples;

@@ -1,5 +1,5 @@
-// The prediction that Fig. 4-1, 4-2, 5-1 and Table 5-1 show: a car on a turn of constant rate, no
-// control.
+// The prediction shown in Fig. 4-1, 4-2, 5-1 and Table 5-1: a car on a turn of constant rate,
+// without control.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ namespace qsmpc::harness {
 inline constexpr double kTurnRate = 0.3;  ///< rad/s, of Fig. 4-1
 
 /// The shipped scenario `dubins_prediction` with `overrides` (KEY=VALUE), turning at kTurnRate for
-/// `stages` periods; samples: of the simulation beside its certificates.
+/// `stages` periods. samples: number of simulated paths to check the certificates with.
 [[nodiscard]] PredictionReport on_a_turn(int stages, const std::vector<std::string>& overrides = {},
                                          std::int64_t samples = 0);
 
 /// `count` paths of the model under the policy of `report`, by stage: those of the scenario's seed
-/// whose numbers begin with `first`. Without noise, only the initial state differs.
+/// numbered from `first` on. Without noise, only the initial states differ.
 struct PathChoice {
   std::uint64_t first = 0;
   std::int64_t count = 0;

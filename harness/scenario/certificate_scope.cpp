@@ -6,7 +6,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Whether the input depends on what is seen of the state.
+/// Whether the input depends on the observed state.
 bool has_feedback(const Scenario::Controller& controller) {
   const std::string& kind = controller.kind;
   if (kind == "lqr" || kind == "tube" || kind == "shield" || is_outside(controller)) return true;

@@ -1,4 +1,4 @@
-// Whether the certificates of a scenario are bounds at all.
+// Whether the certificates of a scenario are valid bounds.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace qsmpc::harness {
 
-/// Why no certificate of `scenario` bounds the probability of being unsafe, in words that may
-/// follow "no bound: "; empty where they do, for the model and for plants within its `model_error`.
-/// With measurement noise and feedback the input depends on the noise, of which a certificate does
-/// not know (docs/theory/certificates.md, section 4). Of a system without derivatives nothing is
-/// known but that probabilities are at most 1.
+/// Why no certificate of `scenario` bounds the probability of being unsafe, worded to follow
+/// "no bound: "; empty where certificates are bounds, for the model and for plants within its
+/// `model_error`. With measurement noise and feedback, the input depends on the noise, which a
+/// certificate does not account for (docs/theory/certificates.md, section 4). For a system without
+/// derivatives, only the trivial bound 1 is known.
 [[nodiscard]] std::string why_no_bound(const Scenario& scenario);
 
 }  // namespace qsmpc::harness

@@ -20,7 +20,7 @@ constexpr const char* kKey = "model.library";
   throw InputError({.key = kKey, .found = found, .expected = expected});
 }
 
-/// What the loader says, without the path that it begins with.
+/// The loader's error message without the path at its beginning.
 std::string loader_words(const std::string& path) {
   const char* const words = dlerror();
   std::string text = words == nullptr ? "an unknown trouble" : words;
@@ -84,13 +84,13 @@ std::unique_ptr<const models::Dynamics> DynamicsLibrary::make(const models::Equa
 }
 
 std::shared_ptr<const DynamicsLibrary> load_dynamics_library(const std::string& path) {
-  // The loader looks for other names in folders of the system.
+  // For any other name the loader would search the system's folders.
   if (!path.starts_with('/')) refuse(path, "an absolute path");
   static std::mutex mutex;
   static std::map<std::string, std::weak_ptr<const DynamicsLibrary>> loaded;
   const std::scoped_lock lock(mutex);
   if (auto known = loaded[path].lock()) return known;
-  // Lazily bound symbols that are not there would end the program in the middle of a drive.
+  // With lazy binding, an undefined symbol would terminate the program in the middle of a drive.
   void* const handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) refuse(path + " (" + loader_words(path) + ")", "a shared library");
   auto library = std::make_shared<const DynamicsLibrary>(path, handle);

@@ -1,5 +1,5 @@
-// Shared libraries with systems of a user's (models/dynamics/own_dynamics.hpp). Loading one runs
-// its code with the rights of the program.
+// Shared libraries of user-defined systems (models/dynamics/own_dynamics.hpp). Loading one runs its
+// code with the rights of the program.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace qsmpc::harness {
 
 class DynamicsLibrary : public std::enable_shared_from_this<DynamicsLibrary> {
  public:
-  /// handle: of dlopen, which this closes.
+  /// handle: from dlopen; closed by this object.
   DynamicsLibrary(std::string path, void* handle);
   ~DynamicsLibrary();
   DynamicsLibrary(const DynamicsLibrary&) = delete;
@@ -22,11 +22,11 @@ class DynamicsLibrary : public std::enable_shared_from_this<DynamicsLibrary> {
 
   /// The names of its systems.
   [[nodiscard]] std::vector<std::string> names() const;
-  /// What the system called `name` says of itself. Throws InputError if there is none, or where
-  /// what it says cannot be.
+  /// The description that the library gives of the system called `name`. Throws InputError if there
+  /// is no such system, or if the description is invalid.
   [[nodiscard]] models::EquationSystem system(const std::string& name) const;
-  /// The model of `system`, one of `system()` with other parameters; it keeps the library. Throws
-  /// as models::make_own_dynamics.
+  /// The model of `system`, which is one of `system()`, possibly with other parameters. The model
+  /// keeps the library loaded. Throws as models::make_own_dynamics.
   [[nodiscard]] std::unique_ptr<const models::Dynamics> make(const models::EquationSystem& system,
                                                              double time_step) const;
 
@@ -38,9 +38,9 @@ class DynamicsLibrary : public std::enable_shared_from_this<DynamicsLibrary> {
   const qsmpc_dynamics_table* table_;
 };
 
-/// Loads the library at the absolute path `path`; a second time it is the same. Throws InputError
-/// with the key model.library where it is no library, is none with systems, or was made for another
-/// version.
+/// Loads the library at the absolute path `path`; a second call returns the same library. Throws
+/// InputError with the key model.library where the file is not a library, contains no systems, or
+/// was built for another version.
 [[nodiscard]] std::shared_ptr<const DynamicsLibrary> load_dynamics_library(const std::string& path);
 
 }  // namespace qsmpc::harness

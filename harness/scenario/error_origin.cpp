@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kOriginKey = "measured";
 constexpr const char* kUnknown = "unknown";
 constexpr std::size_t kLongestDigest = 64;  // bytes
-// Of constants that were written with all their digits.
+// Relative tolerance for constants that were written with all their digits.
 constexpr double kOriginRounding = 1e-12;
 
 bool is_same(double one, double other) {
@@ -118,7 +118,7 @@ KeyDescription disturbance_part() {
                                    deviation("wheelbase")}}}};
 }
 
-/// One line for what is there and here.
+/// One line for a difference between the two.
 void compare(std::vector<std::string>& differences, const char* what, const std::string& there,
              const std::string& here) {
   if (there.empty() || there == here) return;

@@ -1,5 +1,5 @@
-// What a model error was measured of: model, control period, plant and what varies about it. A
-// measured error holds for nothing else.
+// The origin of a measured model error: model, control period, plant and plant variation. A
+// measured error is valid for nothing else.
 #pragma once
 
 #include <optional>
@@ -12,24 +12,24 @@
 
 namespace qsmpc::harness {
 
-/// The key of `model_error` that holds it.
+/// The key of `model_error` that holds the origin.
 [[nodiscard]] KeyDescription error_origin_key();
 
-/// What that key in `section` says; nothing without it. Notes constants of the model and a control
-/// period that are not those of `context`.
+/// The value of that key in `section`; nothing without it. Notes a problem where the model's
+/// constants or the control period differ from those of `context`.
 [[nodiscard]] std::optional<Scenario::ErrorOrigin> read_error_origin(
     Section& section, const ModelErrorContext& context);
 
-/// The key and what is known of `origin`, as YAML lines after `indent`.
+/// The key and the known parts of `origin`, as YAML lines after `indent`.
 [[nodiscard]] std::string error_origin_text(const Scenario::ErrorOrigin& origin,
                                             const std::string& indent);
 
-/// Of an error that is measured with the model and the plant of `scenario`. Throws as
+/// The origin of an error that is measured with the model and the plant of `scenario`. Throws as
 /// load_mujoco_model.
 [[nodiscard]] Scenario::ErrorOrigin error_origin_of(const Scenario& scenario);
 
-/// In what the plant of `scenario` is known to differ from the one that its model error was
-/// measured of, each "WHAT: THERE there, HERE here"; empty where nothing is known. Throws as
+/// The known differences between the plant of `scenario` and the one that its model error was
+/// measured on, each as "WHAT: THERE there, HERE here"; empty where nothing is known. Throws as
 /// load_mujoco_model.
 [[nodiscard]] std::vector<std::string> plant_differences(const Scenario& scenario);
 

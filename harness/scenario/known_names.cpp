@@ -17,11 +17,11 @@
 namespace qsmpc::harness {
 namespace {
 
-// Longer names are no slips of the keyboard, and would cost time quadratic in their length.
+// Longer names are not typing errors, and the distance costs time quadratic in their length.
 constexpr std::size_t kLongestCompared = 64;
 constexpr std::size_t kMostSuggested = 3;
 
-// A third of the letters wrong is still a slip; so are two in a short name.
+// Up to a third of the letters may be wrong, or two in a short name.
 std::size_t farthest_near(std::string_view name) {
   return std::max<std::size_t>(2, name.size() / 3);
 }
@@ -176,7 +176,7 @@ std::vector<std::string> nearest_names(std::string_view name,
   if (name.empty() || name.size() > kLongestCompared) return {};
   std::vector<std::pair<std::size_t, std::string>> near;
   for (const std::string& candidate : known) {
-    // What was begun and not finished ("dubins") is near too, however much is missing.
+    // An unfinished name ("dubins") is near too, however much is missing.
     const bool begun = name.size() >= 3 && candidate.starts_with(name);
     const std::size_t slips = edit_distance(name, candidate);
     const std::size_t distance = begun ? std::min<std::size_t>(slips, 1) : slips;
@@ -196,7 +196,7 @@ std::vector<std::string> nearest_names(std::string_view name,
 std::string expected_names(std::string_view name, const std::vector<std::string>& known) {
   const std::vector<std::string> near = nearest_names(name, known);
   if (near.empty()) return fmt::format("one of {}", fmt::join(known, ", "));
-  // The suggestion stands first, so that no shortening of a long list can lose it.
+  // The suggestion comes first, so that it survives the truncation of a long list.
   return fmt::format("{} (known: {})", fmt::join(near, " or "), fmt::join(known, ", "));
 }
 

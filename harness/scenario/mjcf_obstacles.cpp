@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kGeoms = "geoms";
 constexpr const char* kGroup = "group";
 constexpr const char* kHeight = "height";
-constexpr int kLastGroup = 5;                  // of MuJoCo's
+constexpr int kLastGroup = 5;                  // of MuJoCo's groups
 constexpr std::size_t kLongestGeomName = 200;  // bytes
 
 bool can_stand(const GroundGeom& geom) { return geom.is_static && geom.shape.has_value(); }
@@ -33,14 +33,14 @@ std::string called(const GroundGeom& geom) {
   return geom.name.empty() ? "a geom without a name" : geom.name;
 }
 
-/// What keeps `geom` from being an obstacle below `height`, empty if nothing does.
+/// The reason why `geom` cannot be an obstacle below `height`; empty if it can.
 std::string why_no_obstacle(const GroundGeom& geom, double height) {
   if (!geom.is_static) return called(geom) + ", which moves";
   if (!geom.shape) return called(geom) + ", " + geom.why_none;
   if (!stands_below(geom, height)) {
     return fmt::format("{}, from {:.3g} to {:.3g} m high", called(geom), geom.lowest, geom.highest);
   }
-  // What a scenario can hold, so that the resolved one is read again.
+  // Only obstacles that a scenario can hold, so that the resolved one can be read back.
   Problems problems("");
   const YamlNode tree = parse_yaml(shape_text(*geom.shape), "");
   Section section(tree, problems);
@@ -92,9 +92,9 @@ std::vector<const GroundGeom*> chosen_by_name(const GeomChoice& choice) {
   return chosen;
 }
 
-/// Those of the group that stand still; the ground, and what is above or below, is passed over.
+/// The static geoms of the group; the ground, and geoms above or below, are skipped.
 std::vector<const GroundGeom*> chosen_by_group(const GeomChoice& choice) {
-  constexpr int kNone = -1;  // what is no group's number has been noted
+  constexpr int kNone = -1;  // an invalid group number is already noted
   const int group = choice.section.whole(kGroup, kNone, {0, kLastGroup});
   std::vector<const GroundGeom*> chosen;
   if (group == kNone) return chosen;

@@ -1,4 +1,4 @@
-// Obstacles from what stands still in the plant's MuJoCo XML file.
+// Obstacles from the static geoms of the plant's MuJoCo XML file.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 
 namespace qsmpc::harness {
 
-/// The keys of the section that says which geoms: `geoms`, their names, or `group`; and `height`.
+/// The keys of the section that selects the geoms: `geoms`, their names, or `group`; and `height`.
 [[nodiscard]] std::vector<KeyDescription> mjcf_obstacle_keys();
 
-/// The projections on the ground of the geoms that `section` chooses among those of the file
-/// `mjcf`. Noted are names that it does not have, what moves or has no shape on the ground, what is
-/// not between the ground and the height, and a file that is no model.
+/// The projections on the ground of the geoms that `section` selects from the file `mjcf`. Notes
+/// unknown names, geoms that move, have no shape on the ground or are not between the ground and
+/// the height, and a file that is not a model.
 [[nodiscard]] std::vector<controller::Obstacle> read_mjcf_obstacles(Section& section,
                                                                     const std::string& mjcf,
                                                                     const ObstacleReading& reading);

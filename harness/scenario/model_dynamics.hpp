@@ -1,4 +1,4 @@
-// The planner's model of a scenario, whether it comes with the program or from its user.
+// The planner's model of a scenario, whether built in or user-defined.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 namespace qsmpc::harness {
 
 /// The model for the control period `time_step` (s). Throws InputError where a library cannot be
-/// loaded, and std::invalid_argument where the system refuses its parameters.
+/// loaded, and std::invalid_argument where the system rejects its parameters.
 [[nodiscard]] std::unique_ptr<const models::Dynamics> make_model(const Scenario::Model& model,
                                                                  double time_step);
 
-/// The names, units and bounds of the scenario's system. Loads no library.
+/// The names, units and bounds of the scenario's system. Does not load a library.
 [[nodiscard]] models::SystemDescription system_of(const Scenario& scenario);
 
 }  // namespace qsmpc::harness

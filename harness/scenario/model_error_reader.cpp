@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kErrorKey = "model_error";
-constexpr std::size_t kMostPeriods = 1000;  // with errors of their own
-// Of a norm that is to be at least another one: what printing with ten digits may take away.
+constexpr std::size_t kMostPeriods = 1000;  // with their own errors
+// Relative tolerance where one norm must be at least another: the error of printing ten digits.
 constexpr double kErrorRounding = 1e-9;
 constexpr std::array<const char*, controller::kHigherOrders.size()> kNormKeys = {"norm4", "norm8"};
 
-/// Norms of the error's coordinates, none less than `least` but by rounding; nothing, and a noted
-/// problem, if they are something else.
+/// Norms of the error's coordinates, none below `least` except by rounding; nothing, and a noted
+/// problem, if they are invalid.
 std::optional<Eigen::VectorXd> read_norms(Section& section, const std::string& key,
                                           const Eigen::VectorXd& least,
                                           const std::string& expected) {
@@ -60,10 +60,10 @@ void read_moments(Section& section, Eigen::Index dim, controller::ModelError& er
 
 void read_radius(Section& section, controller::ModelError& error) {
   if (!section.has("radius")) {
-    (void)section.number("radius", 0.0);  // a known key
+    (void)section.number("radius", 0.0);  // registers the key
     return;
   }
-  const double least = error.radius();  // as long as none is stated
+  const double least = error.radius();  // before a radius is stated
   const double radius = section.number("radius", least, kNotNegative);
   if (radius >= (1.0 - kErrorRounding) * least) {
     error.stated_radius = radius;
@@ -72,7 +72,7 @@ void read_radius(Section& section, controller::ModelError& error) {
   }
 }
 
-/// What bounds the error of one period, or of all.
+/// The bounds on the error of one period, or of all.
 controller::ModelError read_bounds(Section& section, Eigen::Index dim) {
   section.require("rms",
                   fmt::format("{} numbers, each the root mean square of a state's error", dim));
@@ -117,7 +117,7 @@ StatedModelError blank(Eigen::Index dim) {
   return {.error = controller::model_error_of_size(Eigen::VectorXd::Zero(dim))};
 }
 
-/// `name`, if it is an absolute path, or else relative to `folder`.
+/// `name` if it is an absolute path, otherwise relative to `folder`.
 std::string path_from(const std::string& folder, const std::string& name) {
   const fs::path path(name);
   return path.is_absolute() ? name : (fs::path(folder) / path).lexically_normal().string();
@@ -139,7 +139,7 @@ StatedModelError read_file(const std::string& path, Problems& problems,
   }
 }
 
-/// Keys and values of what bounds the error of one period, or of all.
+/// Keys and values of the bounds on the error of one period, or of all.
 std::vector<std::pair<std::string, std::string>> bounds_text(const controller::ModelError& error) {
   std::vector<std::pair<std::string, std::string>> lines;
   if (error.offset.size() > 0) lines.emplace_back("offset", yaml_list(error.offset));
@@ -151,7 +151,7 @@ std::vector<std::pair<std::string, std::string>> bounds_text(const controller::M
   return lines;
 }
 
-/// Those of one period, or of all.
+/// The keys of the bounds of one period, or of all.
 std::vector<KeyDescription> bounds_keys() {
   const VectorValue norms{.range = kNotNegative};
   return {{.name = "rms",

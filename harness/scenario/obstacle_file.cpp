@@ -20,7 +20,7 @@ using controller::Obstacle;
 constexpr const char* kType = "type";
 constexpr const char* kCoordinates = "coordinates";
 
-/// A value in the file, and its dotted path.
+/// A node of the file and its dotted path.
 struct PlacedNode {
   const YamlNode& node;
   std::string path;
@@ -178,7 +178,7 @@ class GeoJson {
 
   Problems& problems_;
   std::size_t most_;
-  const YamlNode* radius_ = nullptr;  // of the feature that is read
+  const YamlNode* radius_ = nullptr;  // of the current feature
   std::vector<Obstacle> obstacles_{};
 };
 

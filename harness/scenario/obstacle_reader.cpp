@@ -30,7 +30,7 @@ std::optional<Obstacle> read_box(Section& item, const models::SystemDescription&
   return std::nullopt;
 }
 
-/// Notes what stands beside the shape `name`, which is an obstacle by itself.
+/// Notes keys beside the shape `name`, which must be the only key.
 void refuse_others(Section& item, const std::string& name,
                    const std::vector<models::Coordinate>& states) {
   std::vector<std::string> known = shape_names();
@@ -45,7 +45,7 @@ void refuse_others(Section& item, const std::string& name,
 
 std::optional<Obstacle> read_item(Section& item, const ObstacleReading& reading) {
   const std::vector<models::Coordinate>& states = reading.system.states;
-  // Known keys, so that one that is misspelt is told of them.
+  // Registers the keys, so that an error about a misspelt one suggests them.
   for (const std::string& state : coordinate_names(states)) (void)item.tree(state);
   const std::vector<std::string> shapes = named_shapes(item, states);
   const bool moves = item.tree(kMotionKey) != nullptr;
@@ -90,7 +90,7 @@ std::vector<Obstacle> read_obstacles(Section& section, const std::string& key,
   std::vector<Obstacle> obstacles;
   for (std::size_t i = 0; i < std::min(count, reading.most); ++i) {
     Section item = section.item(key, i);
-    if (!item.present()) continue;  // noted
+    if (!item.present()) continue;  // already noted
     if (std::optional<Obstacle> obstacle = read_item(item, reading)) {
       obstacles.push_back(std::move(*obstacle));
     }

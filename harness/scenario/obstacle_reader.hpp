@@ -10,26 +10,26 @@
 
 namespace qsmpc::harness {
 
-/// Of a safe set: every particle is held against each of them.
+/// Per safe set: every particle is tested against each obstacle.
 inline constexpr std::size_t kMostObstacles = 1000;
 
-/// What obstacles are read for.
+/// The context of reading obstacles.
 struct ObstacleReading {
   const models::SystemDescription& system;
   Problems& problems;
   std::size_t most = kMostObstacles;  ///< that may still be added
 };
 
-/// Whether the system has a plane of position, in which shapes are.
+/// Whether the system has a plane of position, which shapes need.
 [[nodiscard]] bool has_plane(const models::SystemDescription& system);
 
-/// The obstacles in the list under `key` of `section`, each a mapping of states to [lower, upper]
-/// or one shape. Those with something wrong, which is noted, are left out.
+/// The obstacles in the list under `key` of `section`, each a mapping of states to [lower, upper],
+/// or one shape. Invalid ones are noted and left out.
 [[nodiscard]] std::vector<controller::Obstacle> read_obstacles(Section& section,
                                                                const std::string& key,
                                                                const ObstacleReading& reading);
 
-/// As an entry of that list, on one line, of the same values bit for bit.
+/// An entry of that list on one line, which reads back bit for bit.
 [[nodiscard]] std::string obstacle_text(const controller::Obstacle& obstacle,
                                         const models::SystemDescription& system);
 

@@ -7,7 +7,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// Whoever has not answered after this long is taken to hang.
+// A controller that takes longer is taken to hang.
 constexpr double kAnswerDeadline = 10.0;  // s
 
 }  // namespace

@@ -53,7 +53,7 @@ YamlNode& child_in_list(YamlNode& list, const std::string& part, const std::stri
                       .expected = "an index from 0 to " + std::to_string(list.items.size())});
   }
   if (*index == list.items.size()) list.items.emplace_back();
-  // Whether a list is right depends on all of its items: what is wrong with it now may be this one.
+  // A list is checked as a whole, so a problem with it may be due to this item.
   list.from_override = true;
   return list.items[*index];
 }
@@ -70,7 +70,7 @@ YamlNode& child(YamlNode& parent, const std::string& part, const std::string& ke
 }
 
 YamlNode parse_value(const std::string& key, const std::string& text) {
-  // Nothing but blanks is no document to the parser; here it is the empty value.
+  // The parser rejects blank text; here it is the empty value.
   if (text.find_first_not_of(' ') == std::string::npos) return {};
   try {
     return parse_yaml(text, kOverrideSource);
@@ -95,7 +95,7 @@ void apply_override(YamlNode& root, const std::string& override) {
   YamlNode value = parse_value(key, override.substr(equals + 1));
   YamlNode* node = &root;
   for (const std::string& part : split_key(key)) node = &child(*node, part, key);
-  // The line is the overridden value's; nothing is reported at it.
+  // The line is that of the replaced value; no error is reported at it.
   *node = std::move(value);
   mark_overridden(*node);
 }

@@ -20,7 +20,7 @@ using models::EquationSystem;
 constexpr std::size_t kLongestFormula = 10000;  // bytes
 constexpr const char* kLibrary = "library";
 
-/// The unit under `name`, and its section where it is one.
+/// The unit under `name`; `more` becomes its section where it has one.
 models::Coordinate read_coordinate(Section& section, const std::string& name, Section* more) {
   if (section.holds_text(name)) return {name, section.text(name, "", kLongestName)};
   Section parts = section.section(name);
@@ -126,7 +126,7 @@ void read_time(Section& model, EquationSystem& system) {
   }
 }
 
-/// Everything that the section says of a system.
+/// The whole description of a system in the section.
 EquationSystem read_described(Section& model) {
   EquationSystem system;
   system.name = model.text("system", "own_system", kLongestName);
@@ -182,7 +182,7 @@ void read_equations(ScenarioReading& reading, Section& model) {
   }
 }
 
-/// The parameters that the section says of those of a library's system.
+/// The parameters of a library's system that the section overrides.
 void read_given_parameters(Section& model, EquationSystem& system) {
   Section given = model.section("parameters");
   for (auto& parameter : system.parameters) {
@@ -198,7 +198,7 @@ void read_given_parameters(Section& model, EquationSystem& system) {
   given.refuse_unread();
 }
 
-/// Of what a resolved scenario says of its library's system, all has to be so still.
+/// A resolved scenario's description of its library's system must still match the library.
 void check_described(Section& model, const EquationSystem& said, const EquationSystem& system) {
   if (said.states.empty()) return;
   const bool is_same = coordinate_names(said.states) == coordinate_names(system.states) &&
@@ -228,7 +228,7 @@ std::string library_path(const ScenarioReading& reading, Section& model) {
   return name;
 }
 
-/// A system of which the description alone is known: that of a scenario that is only read.
+/// A system whose description alone is known, for a scenario that is read but not run.
 class DescribedDynamics final : public models::Dynamics {
  public:
   explicit DescribedDynamics(models::SystemDescription description)

@@ -1,4 +1,4 @@
-// A user's own system as the `model` section of a scenario says it.
+// A user-defined system, from the `model` section of a scenario.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,16 @@
 
 namespace qsmpc::harness {
 
-/// Whether `model` says a system of the user's, by equations or from a library.
+/// Whether `model` describes a user-defined system, by equations or from a library.
 [[nodiscard]] bool is_own_model(const Section& model);
 
-/// Reads it into the scenario, and makes the reading's dynamics, or notes what is wrong.
+/// Reads the system into the scenario and makes the reading's dynamics, or notes problems.
 void read_own_model(ScenarioReading& reading, Section& model);
 
-/// It as YAML, in lines after the key `model`.
+/// The system as YAML, in lines after the key `model`.
 [[nodiscard]] std::string own_model_text(const Scenario::Model& model);
 
-/// Its keys beside `system`, for tables and editors.
+/// The keys of a user-defined system other than `system`, for tables and editors.
 [[nodiscard]] std::vector<KeyDescription> own_model_keys();
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-// own_model_text and own_model_keys: how a user's system is written and described.
+// own_model_text and own_model_keys: how a user-defined system is written and described.
 #include <fmt/format.h>
 
 #include "harness/scenario/own_model_reader.hpp"
@@ -11,7 +11,7 @@ using models::EquationSystem;
 
 constexpr std::size_t kLongestFormula = 10000;  // bytes
 
-/// {a: …, b: …} from items that are whole.
+/// {a: …, b: …} from complete items.
 std::string braces(const std::string& items) { return "{" + items + "}"; }
 
 void add(std::string& items, const std::string& item) {

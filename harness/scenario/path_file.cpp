@@ -20,7 +20,7 @@ constexpr double kLeastApart = 1e-6;  // m, of successive points
 constexpr std::size_t kPlaceNumbers = 2;
 constexpr std::size_t kWidthNumbers = 4;
 
-/// What separators leave of a line.
+/// The words of a line between separators.
 std::vector<std::string_view> words_of(std::string_view line) {
   constexpr std::string_view kSeparators = ",; \t\r";
   std::vector<std::string_view> words;
@@ -34,7 +34,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
   }
 }
 
-/// The lines of a path file, until one is wrong.
+/// The lines of a path file, up to the first invalid one.
 class PathLines {
  public:
   PathLines(const std::string& path, Problems& problems) : path_(path), problems_(problems) {}

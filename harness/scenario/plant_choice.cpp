@@ -93,7 +93,7 @@ Scenario with_plant(Scenario scenario, const std::string& name) {
          .expected = "an MJCF file that exists, or " + expected_names(name, plant_names(system))});
   }
   if (mjcf != plant.mjcf) {
-    // These speak of the other file.
+    // These refer to the previous file.
     plant.mapping.reset();
     plant.time_step.reset();
   }

@@ -59,7 +59,7 @@ MappingValue quantity() {
            offset_key()}};
 }
 
-/// The keys of all kinds of loops; `kind` says which of them.
+/// The keys of all kinds of loops together; `kind` determines which of them apply.
 std::vector<KeyDescription> loop_keys() {
   const SystemNameValue input{NameFamily::kInputs};
   const MappingValue speed{{parameter_key(), gain_key("factor on the constant, m/s without one")}};

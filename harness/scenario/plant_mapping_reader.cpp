@@ -299,7 +299,7 @@ std::optional<PlantMapping> read_plant_mapping(Section& plant, const MappedSyste
       std::ranges::any_of(keys, [&](const KeyDescription& key) { return plant.has(key.name); });
   if (!any) {
     for (const KeyDescription& key : keys)
-      (void)plant.holds_text(key.name);  // known, though absent
+      (void)plant.holds_text(key.name);  // registers an absent key
     return std::nullopt;
   }
   return MappingReader(plant, system).read();
@@ -314,7 +314,7 @@ PlantMapping parse_plant_mapping(const std::string& text, const std::string& fil
   section.refuse_unread();
   if (!problems.empty()) {
     InputError::Where where = problems.sorted().front();
-    where.line = 0;  // counted within the text, not in the file
+    where.line = 0;  // relative to the text, not to the file
     throw InputError(where);
   }
   return mapping;

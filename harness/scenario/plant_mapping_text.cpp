@@ -1,4 +1,4 @@
-// plant_mapping_text: the writing side of plant_mapping_reader.hpp.
+// plant_mapping_text: writes what plant_mapping_reader.hpp reads.
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// "[a, b]" of what `text` makes of each item.
+/// "[a, b]", where `text` writes each item.
 template <class Items, class Text>
 std::string list_of(const Items& items, Text text) {
   std::string out = "[";

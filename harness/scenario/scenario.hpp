@@ -1,4 +1,5 @@
-// One experiment as plain values: what a scenario file says, checked and with defaults filled in.
+// One experiment as plain values: the content of a scenario file, checked and with defaults filled
+// in.
 //
 // Keys and their meaning are documented in docs/scenario.md. A Scenario that was loaded is valid:
 // sizes agree with the system, covariances are positive semidefinite, names are known.
@@ -30,56 +31,57 @@ namespace qsmpc::harness {
 
 struct Scenario {
   struct Model {
-    std::string system;               ///< a name from `qsmpc list systems`, or the own system's
+    std::string system;               ///< a name from `qsmpc list systems`, or a user-defined one
     models::ParameterMap parameters;  ///< all of them, defaults filled in
-    /// A system of the user's: by equations, or as its library describes it.
+    /// A user-defined system: from equations, or as its library describes it.
     std::optional<models::EquationSystem> own{};
-    std::string library{};  ///< absolute path of the shared library that it is from
+    std::string library{};  ///< absolute path of the system's shared library
   };
   struct Plant {
     std::string kind = "mujoco";  ///< a name from `qsmpc list plants`: "analytic" or "mujoco"
-    std::string mjcf;             ///< absolute path of the XML; also drawn for an analytic plant
-    std::optional<double> time_step{};  ///< the simulator's, s; else the one in the XML
-    /// How the system appears in the MuJoCo model; else what the XML says of itself.
+    std::string mjcf;             ///< absolute path of the XML; also used to draw an analytic plant
+    std::optional<double> time_step{};  ///< the simulator's, s; else that of the XML
+    /// How the system appears in the MuJoCo model; else the mapping in the XML.
     std::optional<PlantMapping> mapping{};
-    bool solid = false;  ///< whether walls and obstacles stand in the way of the MuJoCo vehicle
+    bool solid = false;  ///< whether the MuJoCo vehicle collides with walls and obstacles
   };
   struct GaussianValue {
     Eigen::VectorXd mean;        ///< state_dim
     Eigen::MatrixXd covariance;  ///< state_dim x state_dim
   };
   struct Disturbance {
-    Eigen::MatrixXd covariance;  ///< of the noise in the model, state_dim x state_dim, per period
-    Eigen::MatrixXd sensor{};    ///< of what the planner sees less the state, state_dim x state_dim
-    std::string kind = "state";  ///< how the plant gets it: "state" or "force"
-    /// Deviations of the logarithms of what is drawn once an episode, see PlantVariation.
+    Eigen::MatrixXd covariance;  ///< of the model's noise per period, state_dim x state_dim
+    Eigen::MatrixXd sensor{};    ///< of the measurement noise, state_dim x state_dim
+    std::string kind = "state";  ///< how it acts on the plant: "state" or "force"
+    /// Standard deviations of the logarithms of the factors drawn once per episode, see
+    /// PlantVariation.
     double friction = 0.0;
     double mass = 0.0;
     double wheelbase = 0.0;
-    /// From these periods on, noise and measurement noise are drawn by other seeds; ascending.
+    /// Noise and measurement noise are drawn with these seeds from these periods on; ascending.
     std::vector<models::NoiseSeed> seeds{};
   };
-  /// What a model error was measured of, as far as that is known. It holds for nothing else.
+  /// The origin of a model error, as far as it is known. The error is valid for nothing else.
   struct ErrorOrigin {
     models::ParameterMap parameters;    ///< of the model; empty: not known
     std::optional<double> time_step{};  ///< s, the control period
-    Plant plant{};                      ///< its kind empty: not known; of its file the name
-    std::string digest{};               ///< of that file, by plant_digest; empty: not known
+    Plant plant{};                      ///< empty kind: not known; of its file only the name
+    std::string digest{};               ///< of the plant's file, by plant_digest; empty: not known
     std::string disturbance_kind{};     ///< empty: not known
-    std::optional<double> friction{};   ///< deviations of logarithms, as in Disturbance
+    std::optional<double> friction{};   ///< standard deviations of logarithms, as in Disturbance
     std::optional<double> mass{};
     std::optional<double> wheelbase{};
   };
   struct Target {
-    Eigen::VectorXd state;      ///< state_dim; with a path or waypoints, at the end
+    Eigen::VectorXd state;      ///< state_dim; with a path or waypoints, the final one
     double radius = 0.5;        ///< m, in the plane of position (or over all states without one)
-    std::vector<int> angles{};  ///< indices of states whose target is meant modulo 2π
-    TargetPath path{};          ///< without a row: none
-    /// What controllers follow, where there is a path.
+    std::vector<int> angles{};  ///< indices of the states whose target is modulo 2π
+    TargetPath path{};          ///< no rows: no path
+    /// The path as controllers follow it, where there is one.
     std::optional<controller::PathTarget> course{};
-    /// As they are written, [x, y] or state_dim numbers each; without one: none.
+    /// As written, [x, y] or state_dim numbers each; empty: no waypoints.
     std::vector<Eigen::VectorXd> waypoints{};
-    /// What is driven to in turn, where there are waypoints.
+    /// The waypoints as controllers drive to them in turn, where there are any.
     std::optional<controller::Waypoints> route{};
 
     [[nodiscard]] bool has_path() const { return path.rows.rows() > 0; }
@@ -90,8 +92,9 @@ struct Scenario {
     int noise = 100;                    ///< points of the process noise
     int compressed = 100;               ///< points kept after each step
     std::string quantiser = "product";  ///< of the belief; a name from `qsmpc list quantisers`
-    /// Where above 0, the numbers of the belief and of those kept are chosen, and are at most
-    /// these: what plans may then cost more, relative.
+    /// If above 0, the numbers of points `state` and `compressed` are chosen automatically, with
+    /// the values above as upper limits: the relative increase in a plan's cost that this may
+    /// cause.
     double tolerance = 0.0;
   };
   struct Cost {
@@ -105,11 +108,11 @@ struct Scenario {
     double obstacle = 400.0;       ///< weight
     double length = 0.5;           ///< m, how far outside the unsafe set the smooth shape begins
   };
-  /// Upper limits of certified probabilities, infinite for none.
+  /// Upper limits of certified probabilities of being unsafe; infinite: no limit.
   struct Risk {
-    double stage = std::numeric_limits<double>::infinity();    ///< of each stage of a plan
-    double plan = std::numeric_limits<double>::infinity();     ///< of any stage of a plan
-    double mission = std::numeric_limits<double>::infinity();  ///< of the whole drive
+    double stage = std::numeric_limits<double>::infinity();    ///< at each stage of a plan
+    double plan = std::numeric_limits<double>::infinity();     ///< at any stage of a plan
+    double mission = std::numeric_limits<double>::infinity();  ///< over the whole drive
     std::string otherwise = "least_risk";  ///< a fallback of risk_otherwise_entries()
 
     [[nodiscard]] bool any() const {
@@ -119,47 +122,47 @@ struct Scenario {
     }
   };
   struct Estimator {
-    /// A name from `qsmpc list estimators`; unless given, "exact" without measurement noise and
-    /// else "last_measurement".
+    /// A name from `qsmpc list estimators`; the default is "exact" without measurement noise and
+    /// "last_measurement" with it.
     std::string kind = "exact";
   };
-  /// A controller that is no part of the program: kinds "external" and "library".
+  /// A controller outside the program: kinds "external" and "library".
   struct OutsideController {
     std::vector<std::string> command;  ///< of "external": the program and its arguments
-    std::string folder;                ///< of "external", absolute: where the process works
+    std::string folder;                ///< of "external", absolute: the process's working folder
     std::string library;               ///< of "library": absolute path of the shared library
-    std::string options = "{}";        ///< for the controller, as one JSON object
-    bool plans = false;                ///< whether it answers a plan of `horizon` stages, too
-    double start_deadline = 60.0;      ///< s, from its start until it is ready
+    std::string options = "{}";        ///< passed to the controller, as one JSON object
+    bool plans = false;                ///< whether its answers include a plan of `horizon` stages
+    double start_deadline = 60.0;      ///< s, from start to ready
   };
   struct Shield {
     std::string of = "nominal";  ///< the controller that is shielded
-    double limit = 0.02;         ///< of the certificate of the stages that it looks ahead
-    int stages = 0;              ///< how many; 0: the whole horizon
+    double limit = 0.02;         ///< of the certificate over the stages that it looks ahead
+    int stages = 0;              ///< number of stages; 0: the whole horizon
   };
   struct Controller {
     std::string kind = "quantised";  ///< a name from `qsmpc list controllers`
-    std::string lqr_about = "path";  ///< or "target": about what "lqr" linearises
+    std::string lqr_about = "path";  ///< linearisation point of "lqr", or "target"
     controller::MppiSettings mppi;   ///< of "mppi" and "risk_mppi"
     OutsideController outside;
     int horizon = 8;
-    controller::ChanceSettings chance;  ///< of controllers that keep a chance constraint …
+    controller::ChanceSettings chance;  ///< of the controllers with a chance constraint …
     int disturbance_memory = 8;         ///< … and their memory under "disturbance_feedback"
     Shield shield;
     std::string policy = "closed_loop";            ///< or "open_loop", "disturbance_feedback"
-    std::string guide = "none";                    ///< or "grid": what plans aim along
+    std::string guide = "none";                    ///< or "grid": the guide of plans
     std::optional<Eigen::MatrixXd> feedback_gain;  ///< K, input_dim x state_dim; else from LQR
-    /// Weight of the input in that LQR, relative to the cost's; 0 where it is not given: 1, and
-    /// with limits of the risk what the planner finds best.
+    /// Weight of the input in that LQR, relative to the cost's; 0: not given, which means 1, or the
+    /// planner's best choice with risk limits.
     double feedback_effort = 0.0;
-    /// Whether a matrix that is added to the gains of all stages is optimised along with the
-    /// inputs.
+    /// Whether a common offset of the gains of all stages is optimised along with the inputs.
     bool optimise_gain = false;
     std::string solver = "lbfgs";            ///< a name from `qsmpc list solvers`
     std::string input_bounding = "bounded";  ///< a name from `qsmpc list boundings`
     Quantisation quantisation;
     bool propagate_noise = true;
-    /// How, in the prediction; a name from `qsmpc list propagators`. The default without noise.
+    /// How the prediction propagates noise; a name from `qsmpc list propagators`. Without noise,
+    /// always the default.
     std::string propagator = "mixture";
     Cost cost;
     Penalty penalty;
@@ -167,14 +170,14 @@ struct Scenario {
     Eigen::VectorXd input_upper;  ///< input_dim
     int max_iterations = 100;
     double deadline = std::numeric_limits<double>::infinity();  ///< of one plan, s
-    int threads = 1;  ///< that loops over many particles are divided among
+    int threads = 1;                                            ///< for loops over many particles
   };
   struct Video {
     std::string camera = "chase";  ///< "chase", "top", "fixed" or "split"
     int width = 1280;              ///< pixels
     int height = 720;              ///< pixels
-    int fps = 30;                  ///< frames a second
-    /// Names from `overlay_names`, each once.
+    int fps = 30;                  ///< frames per second
+    /// Distinct names from `overlay_names`.
     std::vector<std::string> overlays{"particles", "ellipses", "tube", "ghost", "body", "path"};
   };
 
@@ -185,9 +188,10 @@ struct Scenario {
   double time_step = 0.1;  ///< s, the control period
   GaussianValue initial_state;
   Disturbance disturbance;
-  /// How far the plant is from the model, where that is known: certificates then hold for it.
+  /// Bounds on the difference between plant and model, where known: certificates then hold for the
+  /// plant.
   std::optional<controller::ModelError> model_error;
-  std::optional<ErrorOrigin> error_origin{};  ///< where that says it
+  std::optional<ErrorOrigin> error_origin{};  ///< of the model error, if stated
   controller::SafeSet safe_set;
   Target target;
   Risk risk;

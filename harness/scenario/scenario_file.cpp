@@ -54,7 +54,7 @@ struct FoundElement {
   const YamlNode* node;
 };
 
-/// The first text `element` below `node` under a key of which `names_it`, or in a list.
+/// The first text `element` below `node`, in a list or under a key that `names_it` accepts.
 std::optional<FoundElement> find_element(const YamlNode& node, const std::string& key,
                                          const std::string& element,
                                          const std::function<bool(const std::string&)>& names_it) {

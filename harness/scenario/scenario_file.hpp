@@ -1,4 +1,4 @@
-// Scenario files: loaded and checked, or refused with where and why; and written back.
+// Scenario files: loaded and checked, or refused with place and reason; and written back.
 //
 //   Scenario scenario = load_scenario("dubins_obstacles", {"controller.horizon=12"});
 //   write_file(folder + "/scenario.yaml", to_yaml(scenario));
@@ -16,36 +16,36 @@
 
 namespace qsmpc::harness {
 
-/// What the resolved scenario is called among the files that a command leaves.
+/// The name of the resolved scenario among a command's output files.
 inline constexpr const char* kScenarioFile = "scenario.yaml";
 
-/// Where a scenario's text comes from.
+/// The origin of a scenario's text.
 struct ScenarioSource {
-  std::string file = "scenario";  ///< what errors call it
-  std::string folder{};           ///< where its files are looked up; the current one if empty
-  std::vector<std::string> overrides{};  ///< KEY=VALUE, each as after --set, applied in order
-  /// Whether a MuJoCo XML file that is not found is refused; otherwise its name is kept as it is
-  /// written, for those who only read a recorded scenario.
+  std::string file = "scenario";  ///< its name in errors
+  std::string folder{};           ///< base of relative file paths; the current folder if empty
+  std::vector<std::string> overrides{};  ///< KEY=VALUE, each as for --set, applied in order
+  /// Whether a missing MuJoCo XML file is an error; otherwise its name is kept as written, for
+  /// callers that only read a recorded scenario.
   bool files_must_exist = true;
-  /// Whether the text is one that a program wrote, in this version or an earlier one: a vehicle
-  /// without a footprint is then a point. So it is too where files need not exist.
+  /// Whether a program wrote the text, in this or an earlier version: a vehicle without a footprint
+  /// is then a point. Implied where files need not exist.
   bool is_recorded = false;
 };
 
-/// The path of the scenario `path_or_name`: a path, or the name of a shipped one.
-/// Throws InputError when it is neither.
+/// The path of the scenario `path_or_name`: a path, or the name of a shipped one. Throws InputError
+/// when it is neither.
 [[nodiscard]] std::string find_scenario(const std::string& path_or_name);
 
-/// Loads a scenario file, a path or the name of a shipped one, with `overrides` (KEY=VALUE) applied
-/// in their order. Throws InputError with the first thing that is wrong: its file ("--set" for an
-/// override), line, key, what was found and what is expected.
+/// Loads a scenario file, given by its path or the name of a shipped one, with `overrides`
+/// (KEY=VALUE) applied in order. Throws InputError with the first problem: its file ("--set" for an
+/// override), line, key, what was found and what was expected.
 [[nodiscard]] Scenario load_scenario(const std::string& path_or_name,
                                      const std::vector<std::string>& overrides = {});
 
-/// A scenario file that is read once, to be loaded many times with different overrides.
+/// A scenario file that is read once and can be loaded many times with different overrides.
 class ScenarioBase {
  public:
-  /// Throws InputError where there is no such file, or no tree of keys in it.
+  /// Throws InputError where there is no such file, or the file is not a valid tree of keys.
   explicit ScenarioBase(const std::string& path_or_name);
 
   /// As load_scenario.
@@ -56,31 +56,30 @@ class ScenarioBase {
   YamlNode tree_;
 };
 
-/// As load_scenario, from the text itself, e.g. one that a trace holds.
+/// As load_scenario, from the text itself, e.g. from a trace.
 [[nodiscard]] Scenario parse_scenario(const std::string& text, const ScenarioSource& source = {});
 
-/// Everything that is wrong with a scenario file with `overrides` applied, the file being
-/// unreadable included; empty if it is valid. At most 100 problems; after one that leaves no tree
-/// of keys to look at, that one.
+/// All problems of a scenario file with `overrides` applied, including an unreadable file; empty if
+/// it is valid. At most 100 problems; if the file is not a valid tree of keys, only that one.
 [[nodiscard]] std::vector<InputError::Where> validate_scenario_file(
     const std::string& path_or_name, const std::vector<std::string>& overrides = {});
 
-/// Where `key`, a dotted path, stands in a scenario file with `overrides` applied: `file` ("--set"
-/// for an override) and `line` of it, or of the nearest section around it that is there.
-/// Throws InputError where there is no such file, or no tree of keys in it.
+/// The place of `key`, a dotted path, in a scenario file with `overrides` applied: `file` ("--set"
+/// for an override) and `line` of the key, or of the nearest enclosing section that exists. Throws
+/// InputError where there is no such file, or the file is not a valid tree of keys.
 [[nodiscard]] InputError::Where place_of_key(const std::string& path_or_name,
                                              const std::vector<std::string>& overrides,
                                              const std::string& key);
 
-/// Where the mapping under `plant` names `element`, a "joint", "body", "sensor", "actuator" or
-/// "site" by its `kind`: as place_of_key, with `key`; none where it does not.
+/// The place where the mapping under `plant` names `element`, whose `kind` is "joint", "body",
+/// "sensor", "actuator" or "site": as place_of_key, with `key`; nothing where it is not named.
 [[nodiscard]] std::optional<InputError::Where> place_of_element(
     const std::string& path_or_name, const std::vector<std::string>& overrides,
     const std::string& kind, const std::string& element);
 
 /// The scenario as a file with every key written out. Loading it gives the same values, bit for
-/// bit. The same scenario always gives the same bytes; a shipped MuJoCo XML file is written by its
-/// name, so that no path of this machine is in it, any other by its absolute path.
+/// bit. Equal scenarios give equal bytes. A shipped MuJoCo XML file is written by name, so that the
+/// text contains no path of this machine; any other by its absolute path.
 [[nodiscard]] std::string to_yaml(const Scenario& scenario);
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-// read_scenario: reading the keys of a scenario as they are described.
+// read_scenario: reads the keys of a scenario according to their descriptions.
 #include "harness/scenario/scenario_reader.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ Eigen::Index size_of(Dimension dimension, const models::SystemDescription& syste
   return std::ssize(dimension == Dimension::kInputs ? system.inputs : system.states);
 }
 
-/// What a required key should hold.
+/// The expected value of a required key, for errors.
 struct ExpectedValue {
   const ScenarioReading& reading;
 
@@ -36,7 +36,7 @@ struct ExpectedValue {
   }
 };
 
-/// Reads a value into the member that it belongs to.
+/// Reads a value into its member.
 struct MemberReading {
   ScenarioReading& reading;
   Section& section;
@@ -100,7 +100,7 @@ class ScenarioReader {
     if (reading_.dynamics != nullptr) {
       read_those(ReadAfter::kSystem);
     } else {
-      // Sizes are not known without a system; what is wrong in here shows once it has one.
+      // Sizes depend on the system; problems here are reported once there is one.
       for (const ScenarioKey& key : scenario_keys()) {
         if (key.after == ReadAfter::kSystem) expect_section(key);
       }

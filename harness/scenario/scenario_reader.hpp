@@ -1,4 +1,4 @@
-// From a scenario's tree of keys to a checked Scenario.
+// Converts a scenario's tree of keys into a checked Scenario.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace qsmpc::harness {
 
-/// How the files that a scenario names are looked up.
+/// The lookup rules for files that a scenario names.
 struct FileLookup {
   std::string folder;      ///< of the scenario; the current one when empty
-  bool must_exist = true;  ///< otherwise a file that is not found keeps the name that was written
-  /// Whether a program wrote the scenario: what it does not say is from before it could be said.
+  bool must_exist = true;  ///< otherwise a missing file keeps the name as written
+  /// Whether a program wrote the scenario: absent keys then mean that it predates them.
   bool is_recorded = false;
 };
 
-/// Reads `tree`, with defaults filled in. Everything wrong with it is noted in `problems`; the
-/// scenario is valid only if nothing was.
+/// Reads `tree`, filling in defaults. All problems are noted in `problems`; the scenario is valid
+/// only if there are none.
 [[nodiscard]] Scenario read_scenario(const YamlNode& tree, const FileLookup& lookup,
                                      Problems& problems);
 

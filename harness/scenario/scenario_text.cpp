@@ -1,4 +1,4 @@
-// to_yaml: the writing side of scenario_file.hpp; and defaults as they are written.
+// to_yaml: writes what scenario_file.hpp loads; and the text of defaults.
 #include "harness/scenario/scenario_text.hpp"
 
 #include <cmath>
@@ -45,7 +45,7 @@ class ScenarioWriter {
   explicit ScenarioWriter(const Scenario& scenario)
       : scenario_(scenario), system_(system_of(scenario)) {}
 
-  /// A line for each key, more where the value has several, after `indent`.
+  /// One line per key after `indent`, more where the value spans several.
   std::string lines(const std::vector<ScenarioKey>& keys, const std::string& indent) {
     std::string out;
     for (const ScenarioKey& key : keys) {
@@ -80,7 +80,7 @@ class ScenarioWriter {
     return "{" + out + "}";
   }
 
-  Scenario scenario_;  // a copy: members are reached by references that could change them
+  Scenario scenario_;  // a copy, since members are accessed through mutable references
   models::SystemDescription system_;
 };
 

@@ -7,8 +7,8 @@
 
 namespace qsmpc::harness {
 
-/// What the member of `key` is by default, as YAML; empty for a key without one, for no text, and
-/// for a matrix, whose default depends on the system.
+/// The default of the member of `key`, as YAML; empty for a key without a member, for an empty
+/// text, and for a matrix, whose default depends on the system.
 [[nodiscard]] std::string default_text(const ScenarioKey& key);
 
 }  // namespace qsmpc::harness

@@ -50,7 +50,7 @@ void warn_of_limits(const Scenario& scenario, std::vector<std::string>& warnings
   }
 }
 
-/// A turn and more is no heading that anybody writes in radians.
+/// A heading of a full turn or more is unlikely to be in radians.
 void warn_of_degrees(const Scenario& scenario, std::vector<std::string>& warnings) {
   const std::vector<models::Coordinate> states = system_of(scenario).states;
   const auto question = [&](const std::string& key, const Eigen::VectorXd& values) {
@@ -75,7 +75,7 @@ void warn_of_degrees(const Scenario& scenario, std::vector<std::string>& warning
   }
 }
 
-/// Of a file that says of which plant its error was measured.
+/// For a model error whose file states the plant that it was measured on.
 void warn_of_error_plant(const Scenario& scenario, std::vector<std::string>& warnings) {
   for (const std::string& difference : plant_differences(scenario)) {
     warnings.push_back(

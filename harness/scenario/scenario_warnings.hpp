@@ -1,4 +1,4 @@
-// What is worth saying about a valid scenario before its first period.
+// Warnings about a valid scenario, before its first period.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace qsmpc::harness {
 
-/// One sentence without a full stop for each: certificates that are no bounds, an angle that looks
-/// like degrees, a limit of the risk that nothing can keep, a start that is unsafe with a certified
-/// probability above a limit, and a model error that was measured of another plant.
-/// Throws as load_mujoco_model where a file says of which vehicle that was.
+/// One sentence without a full stop for each of: certificates that are not bounds, an angle that
+/// looks like degrees, a risk limit that cannot be met, a start that is unsafe with a certified
+/// probability above a limit, and a model error that was measured on another plant. Throws as
+/// load_mujoco_model where a file states the vehicle of its model error.
 [[nodiscard]] std::vector<std::string> scenario_warnings(const Scenario& scenario);
 
 }  // namespace qsmpc::harness

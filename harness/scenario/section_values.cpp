@@ -25,7 +25,7 @@ std::optional<std::string> named_file(Section& section, const std::string& key,
                                       const std::string& folder, const std::string& expected) {
   namespace fs = std::filesystem;
   const std::string name = section.text(key, "", kLongestPath);
-  if (!section.holds_text(key)) return std::nullopt;  // noted
+  if (!section.holds_text(key)) return std::nullopt;  // already noted
   std::error_code error;
   fs::path path = fs::path(folder) / name;
   if (section.is_override(key) && !fs::is_regular_file(path, error)) path = name;

@@ -1,4 +1,4 @@
-// Values that several sections of a scenario hold, read and checked.
+// Values that several sections of a scenario share, read and checked.
 #pragma once
 
 #include <optional>
@@ -14,19 +14,19 @@
 namespace qsmpc::harness {
 
 /// The symmetric, positive semidefinite matrix under `key`, of the size of `fallback`; `fallback`
-/// where there is none, or another one, which is noted.
+/// where there is none, or where it is invalid, which is noted.
 [[nodiscard]] Eigen::MatrixXd semidefinite(Section& section, const std::string& key,
                                            const Eigen::MatrixXd& fallback);
 
-/// The path of the file that `key`, which is there, names: an absolute one, or relative to
-/// `folder`; of a value from --set else to the working folder. Nothing, and a noted problem with
-/// `expected`, where there is no such file.
+/// The path of the file that `key`, which must be present, names: absolute, or relative to
+/// `folder`, or for a value from --set otherwise to the working folder. Nothing, and a noted
+/// problem with `expected`, where there is no such file.
 [[nodiscard]] std::optional<std::string> named_file(Section& section, const std::string& key,
                                                     const std::string& folder,
                                                     const std::string& expected);
 
 struct IntervalOptions {
-  controller::Box fallback;  ///< of coordinates that are not named
+  controller::Box fallback;  ///< for coordinates that are not named
   bool finite = false;       ///< whether infinite ends are refused
 };
 
@@ -36,7 +36,7 @@ struct NamedIntervals {
   bool any = false;  ///< whether a coordinate is named
 };
 
-/// The intervals that `section` has by the names of `coordinates`. Any other key is noted.
+/// The intervals in `section` for the names of `coordinates`. Any other key is noted.
 [[nodiscard]] NamedIntervals read_intervals(Section& section,
                                             const std::vector<models::Coordinate>& coordinates,
                                             const IntervalOptions& options);

@@ -22,14 +22,14 @@ constexpr const char* kScenarios = "scenarios";
 constexpr const char* kCampaigns = "campaigns";
 constexpr const char* kContests = "contests";
 
-// A path without "..", links resolved as far as it exists; never throws.
+// `path` without "..", with links resolved as far as it exists; never throws.
 fs::path normal(const fs::path& path) {
   std::error_code error;
   fs::path canonical = fs::weakly_canonical(path, error);
   return error ? path.lexically_normal() : canonical;
 }
 
-// PREFIX/share/qsmpc/models; empty where nothing is installed.
+// PREFIX/share/qsmpc/models; empty where the program is not installed.
 fs::path installed_models_folder() {
   std::error_code error;
   for (const std::string& prefix : installation_prefixes()) {
@@ -57,7 +57,7 @@ std::string description_in(const std::string& path) {
     const YamlNode* node = tree.find("description");
     return node == nullptr ? "" : printable(node->text, 200);
   } catch (const InputError&) {
-    return "";  // `qsmpc validate` says what is wrong; a list of names should not fail over it
+    return "";  // `qsmpc validate` reports the problem; a list of names should not fail over it
   }
 }
 
@@ -83,7 +83,7 @@ std::vector<ShippedFile> shipped_files(const char* folder) {
   return files;
 }
 
-/// The folder of the files of a kind, and what one is called.
+/// The folder of a kind of files, and the word for one of them.
 struct KindWords {
   const char* folder;
   const char* what;

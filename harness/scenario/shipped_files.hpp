@@ -1,4 +1,4 @@
-// Where the models, scenarios and campaigns are that come with the program.
+// The locations of the shipped models, scenarios and campaigns.
 #pragma once
 
 #include <optional>
@@ -7,25 +7,25 @@
 
 namespace qsmpc::harness {
 
-/// An experiment that comes with the program.
+/// A shipped experiment.
 struct ShippedFile {
-  std::string name;         ///< as it is given on the command line
-  std::string description;  ///< one line, from the file; empty where that cannot be read
+  std::string name;         ///< as given on the command line
+  std::string description;  ///< one line, from the file; empty where the file cannot be read
   std::string path;
 };
 using ShippedScenario = ShippedFile;
 using ShippedCampaign = ShippedFile;
 using ShippedContest = ShippedFile;
 
-/// The folder of shipped models, with `campaigns`, `contests`, `scenarios` and `mjcf` in it: the
-/// environment variable QSMPC_MODELS where it is set, else ../share/qsmpc/models beside the
-/// program, else the source tree's.
+/// The folder of shipped models, which contains `campaigns`, `contests`, `scenarios` and `mjcf`:
+/// the environment variable QSMPC_MODELS if set, else ../share/qsmpc/models beside the program,
+/// else the source tree's.
 [[nodiscard]] std::string shipped_models_folder();
 
-/// All of them, by name; empty where the folder cannot be read.
+/// All shipped scenarios, by name; empty where the folder cannot be read.
 [[nodiscard]] std::vector<ShippedScenario> shipped_scenarios();
 
-/// Their names only, without reading the files.
+/// Only their names, without reading the files.
 [[nodiscard]] std::vector<std::string> shipped_scenario_names();
 
 /// As for scenarios.
@@ -45,20 +45,20 @@ using ShippedContest = ShippedFile;
 /// The path of the shipped contest called `name`, or nothing.
 [[nodiscard]] std::optional<std::string> find_shipped_contest(const std::string& name);
 
-/// Files that are shipped by name.
+/// The kinds of files that are shipped by name.
 enum class ShippedKind { kScenario, kCampaign, kContest };
 
-/// `path_or_name` where it is a file, else the path of the shipped file of that name, else again
-/// `path_or_name` where it looks like a path, so that reading it says what is wrong with it.
-/// Throws InputError where it is none of them.
+/// `path_or_name` where it is a file; else the path of the shipped file of that name; else
+/// `path_or_name` again where it looks like a path, so that the error comes from reading it. Throws
+/// InputError otherwise.
 [[nodiscard]] std::string find_file_or_shipped(const std::string& path_or_name, ShippedKind kind);
 
-/// Absolute path of the MuJoCo XML file `name`: an absolute path as it is, else relative to
-/// `scenario_folder`, else among the shipped ones. Empty if there is no such file.
+/// Absolute path of the MuJoCo XML file `name`: an absolute path is kept, a relative one is looked
+/// up in `scenario_folder`, then among the shipped files. Empty if there is no such file.
 [[nodiscard]] std::string find_mjcf(const std::string& name, const std::string& scenario_folder);
 
-/// What `find_mjcf` finds `path` again by, on any machine where that is possible: the shipped name
-/// of a shipped file, otherwise `path` itself.
+/// The name by which `find_mjcf` finds `path` again, where possible on any machine: the name of a
+/// shipped file, otherwise `path` itself.
 [[nodiscard]] std::string mjcf_name(const std::string& path);
 
 }  // namespace qsmpc::harness

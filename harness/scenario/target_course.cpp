@@ -11,21 +11,21 @@
 namespace qsmpc::harness {
 namespace {
 
-/// How far the body reaches to either side at least, m.
+/// A lower bound on the body's reach to either side, m.
 double half_width(const controller::Body& body) {
   double most = 0.0;
   for (const controller::Disc& disc : body.discs) most = std::max(most, disc.radius);
   return most;
 }
 
-/// The row that is nearest to a place.
+/// The row nearest to a point.
 Eigen::Index nearest_row(const Eigen::MatrixXd& rows, const Eigen::Vector2d& place) {
   Eigen::Index nearest = 0;
   (rows.leftCols<2>().rowwise() - place.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
   return nearest;
 }
 
-/// Whether a place is in a triangle or on its border, as far as rounding tells.
+/// Whether a point is in a triangle or on its border, up to rounding.
 bool is_in_triangle(const Eigen::Vector2d& place, const Eigen::Vector2d& a,
                     const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   constexpr double kRounding = 1e-9;

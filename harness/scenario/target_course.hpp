@@ -1,4 +1,4 @@
-// From a path as it is written to what controllers follow, and to the walls of its road.
+// Converts a path as written into the course that controllers follow and the walls of its road.
 #pragma once
 
 #include <string>
@@ -10,32 +10,31 @@
 
 namespace qsmpc::harness {
 
-/// The walls behind a road's edges are this thick, m, or so many periods at its top speed where
-/// that is more: nobody gets over them within a period.
+/// The walls behind a road's edges are kLeastWallThickness (m) thick, or kWallPeriods periods at
+/// its top speed where that is more: no vehicle crosses them within a period.
 inline constexpr double kLeastWallThickness = 2.0;
 inline constexpr double kWallPeriods = 2.0;
 
-/// What a course is made for.
+/// The conditions that a course starts from.
 struct CourseStart {
-  Eigen::Vector2d position;  ///< of the vehicle's mean at first
+  Eigen::Vector2d position;  ///< of the vehicle's mean, initially
   double time_step = 0.1;    ///< s
 };
 
-/// The path as controllers follow it: from where it is nearest to the start, over its laps or to
-/// its end. `path` must be one that check_path_rows takes.
+/// The path as controllers follow it: from the point nearest to the start, over its laps or to its
+/// end. `path` must be valid according to check_path_rows.
 [[nodiscard]] controller::PathTarget course_of(const TargetPath& path, const CourseStart& start);
 
-/// The walls of the road that the path's widths make; null without widths, and where something is
-/// wrong, which is noted: edges that fold back in a bend or meet, a road that is narrower than the
-/// body.
+/// The walls of the road given by the path's widths; null without widths. Null too, with a noted
+/// problem, for edges that fold back in a bend or meet, and for a road narrower than the body.
 [[nodiscard]] std::shared_ptr<const controller::RoadWalls> road_of(
     const TargetPath& path, const controller::PathTarget& course, const controller::Body& body,
     const RowNote& note);
 
-/// Places along the whole path for drawing, back to the first where it is closed, 2 x n.
+/// Points along the whole path for drawing, back to the first where it is closed, 2 x n.
 [[nodiscard]] Eigen::Matrix2Xd centre_line(const controller::ArcPath& path);
 
-/// Whether a place is on the road.
+/// Whether a point is on the road.
 [[nodiscard]] bool is_on_road(const controller::RoadWalls& road, const Eigen::Vector2d& place);
 
 }  // namespace qsmpc::harness

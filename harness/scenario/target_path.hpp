@@ -1,4 +1,4 @@
-// A target that is a path: what the scenario says of it, and what follows from that.
+// A target that is a path, as the scenario states it and as derived.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@
 
 namespace qsmpc::harness {
 
-/// A path to be followed, as it is written.
+/// A path to be followed, as written.
 struct TargetPath {
-  /// n x 2: x and y, or n x 4: and the widths from there to the right and to the left edge, m.
+  /// n x 2: x and y; or n x 4: x, y and the widths to the right and to the left edge, m.
   Eigen::MatrixXd rows;
   bool closed = false;
-  bool fast = false;                 ///< as fast as the limits allow, else at `speed`
+  bool fast = false;                 ///< as fast as the limits allow; else at `speed`
   double speed = 1.0;                ///< m/s
-  controller::SpeedLimits limits{};  ///< of a fast one
-  int laps = 1;                      ///< of a closed one
+  controller::SpeedLimits limits{};  ///< of a fast path
+  int laps = 1;                      ///< of a closed path
 
   [[nodiscard]] bool has_widths() const { return rows.cols() > 2; }
 };

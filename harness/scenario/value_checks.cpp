@@ -13,8 +13,8 @@
 namespace qsmpc::harness {
 namespace {
 
-// Relative to the largest entry: far above the rounding of a matrix that a program printed with
-// ten digits, far below an entry that somebody meant.
+// Relative to the largest entry: far above the rounding of a matrix printed with ten digits, far
+// below an intended entry.
 constexpr double kMatrixTolerance = 1e-9;
 
 std::optional<int> parse_side(std::string_view text, int most) {
@@ -23,12 +23,12 @@ std::optional<int> parse_side(std::string_view text, int most) {
   return is_allowed ? side : std::nullopt;
 }
 
-/// "x" in the bounds of a coordinate, e.g. "-1 < x < 12".
+/// A coordinate's bounds, e.g. "-1 < x < 12".
 std::string bounds_text(const controller::Box& bounds, Eigen::Index axis, const std::string& name) {
   return fmt::format("{} < {} < {}", bounds.lower[axis], name, bounds.upper[axis]);
 }
 
-/// Which bound the disc's centre is not clear of.
+/// The bound that the disc violates.
 std::optional<std::string> why_beyond(const Eigen::VectorXd& centre,
                                       const controller::DiscView& disc,
                                       const controller::Box& bounds,
@@ -49,7 +49,7 @@ std::optional<std::string> why_beyond(const Eigen::VectorXd& centre,
   return std::nullopt;
 }
 
-/// Which bound or obstacle the body is not clear of; its position is.
+/// The bound or obstacle that the body violates, for a state whose position is safe.
 std::optional<std::string> why_body_unsafe(const Eigen::VectorXd& state,
                                            const controller::SafeSet& safe_set,
                                            const std::vector<models::Coordinate>& states) {
@@ -88,7 +88,7 @@ std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix) {
       matrix(j, i) = matrix(i, j);
     }
   }
-  // Scaled, so that no entry however large or small overflows on the way to the eigenvalues.
+  // Scaled, so that no entry overflows in the computation of the eigenvalues.
   const double least = models::symmetric_eigenvalues(matrix / scale).minCoeff();
   if (least >= -kMatrixTolerance) return std::nullopt;
   return fmt::format("a matrix with the eigenvalue {:.6g}", least * scale);

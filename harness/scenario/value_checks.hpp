@@ -1,5 +1,5 @@
-// What a value must be beyond its type and size; each returns what is wrong in the words that an
-// error uses for what was found, or nothing.
+// Checks of a value beyond its type and size; each returns the problem in the words that an error
+// uses for what was found, or nothing.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,13 @@
 
 namespace qsmpc::harness {
 
-/// Replaces the upper triangle of the square, finite `matrix` by the lower one where they differ by
-/// rounding only. Returns what keeps it from being symmetric and positive semidefinite: entries
-/// that differ by more than 1e-9 of the largest entry, or an eigenvalue below minus 1e-9 of it.
+/// Copies the lower triangle of the square, finite `matrix` to the upper one where they differ by
+/// rounding only. Returns why the matrix is not symmetric and positive semidefinite: entries that
+/// differ by more than 1e-9 of the largest entry, or an eigenvalue below minus 1e-9 of it.
 [[nodiscard]] std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix);
 
-/// The least variance that is not 0: certificates divide by it and square what comes out, and below
-/// it that leaves the range of numbers, so that a bound may come out too low.
+/// The least variance other than 0. Certificates divide by the variance and square the result;
+/// below this limit that leaves the range of floating-point numbers, and a bound may be too low.
 inline constexpr double kLeastVariance = 1e-300;
 
 /// The first variance of a covariance that is neither 0 nor at least kLeastVariance, e.g.
@@ -30,10 +30,10 @@ inline constexpr double kLeastVariance = 1e-300;
 /// What is expected where `tiny_variance` found something.
 [[nodiscard]] std::string expected_variances();
 
-/// The largest number of a state, in its unit: simulators give up not far beyond.
+/// The largest magnitude of a state, in its unit: simulators fail not far beyond it.
 inline constexpr double kLargestCoordinate = 1e9;
 
-/// Which bound or obstacle makes the state `point` unsafe, its body included, naming states as
+/// The bound or obstacle that makes the state `point` unsafe, its body included, naming states as
 /// `states` does, e.g. "x = 13, outside of the bounds -1 < x < 12" or
 /// "a body that reaches 0.1 into safe_set.obstacles.0".
 [[nodiscard]] std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
@@ -48,15 +48,15 @@ struct FrameSize {
 
 inline constexpr int kMostStages = 1000;  // of a horizon
 
-inline constexpr int kLeastFrameSide = 64;    // pixels; less shows nothing
+inline constexpr int kLeastFrameSide = 64;    // pixels; smaller frames show nothing
 inline constexpr int kMostFrameWidth = 7680;  // pixels, 8K
 inline constexpr int kMostFrameHeight = 4320;
 
-/// The size written as "1280x720": both even, as video encoders need, and within the limits above;
-/// nothing if `text` is something else.
+/// The size written as "1280x720": both even, as video encoders require, and within the limits
+/// above; nothing for any other `text`.
 [[nodiscard]] std::optional<FrameSize> parse_frame_size(std::string_view text);
 
-/// What an error says is expected where `parse_frame_size` found nothing.
+/// The expectation that an error states where `parse_frame_size` returned nothing.
 [[nodiscard]] std::string expected_frame_size();
 
 }  // namespace qsmpc::harness

@@ -11,10 +11,11 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr int kMostDiscs = 5;         // every point of a measure is held against each of them
+constexpr int kMostDiscs = 5;         // every point of a measure is tested against each of them
 constexpr double kMostBeyond = 0.15;  // of the width
 
-/// What of the model is the position or heading `state`. `quantity`: what it must be of a body.
+/// The model's quantity for the position or heading `state`. `quantity`: the required quantity of a
+/// body.
 const PlantQuantity& placing_quantity(const std::string& mjcf, const PlantMapping& mapping,
                                       const std::string& state, const char* quantity) {
   const PlantQuantity& found = mapping.states.at(state);

@@ -1,4 +1,4 @@
-// Trees of YAML as JSON, for those who do not read YAML.
+// Conversion of YAML trees to JSON, for callers that do not read YAML.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,8 @@
 
 namespace qsmpc::harness {
 
-/// `node` as JSON: scalars that are not quoted become numbers, true, false and null where YAML
-/// takes them for such, all others texts. Nothing where a number is not finite, which JSON cannot
-/// say.
+/// `node` as JSON: unquoted scalars become numbers, true, false and null where YAML reads them so;
+/// all others become strings. Nothing where a number is not finite, which JSON cannot represent.
 [[nodiscard]] std::optional<nlohmann::ordered_json> json_of(const YamlNode& node);
 
 }  // namespace qsmpc::harness

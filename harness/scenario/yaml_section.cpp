@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kMostProblems = 100;  // more help nobody, and cost time on a hostile file
+constexpr std::size_t kMostProblems = 100;  // more do not help, and cost time on a hostile file
 
 std::string describe(const NumberRange& range) {
   if (std::isinf(range.least) && std::isinf(range.most)) return "a finite number";
@@ -131,7 +131,7 @@ Section Section::item(const std::string& key, std::size_t index) {
 }
 
 void Section::require(const std::string& key, const std::string& expected) {
-  // A section that is something else has been noted as such; its keys are not missing as well.
+  // A section of the wrong type is already noted; its keys are not reported as missing too.
   const bool noted = node_ == nullptr && origin_->kind != YamlNode::Kind::kMap;
   if (take(key) == nullptr && !noted) problems_->add(*origin_, path_of(key), "nothing", expected);
 }
@@ -207,8 +207,8 @@ std::string Section::text(const std::string& key, const std::string& fallback,
          fmt::format("{} bytes", node->text.size()));
     return fallback;
   }
-  // An escape in a quoted scalar can make what the file itself may not hold.
-  // A folded block (">") ends in a line feed that is no part of the text.
+  // An escape in a quoted scalar can produce characters that the file itself may not contain. A
+  // folded block (">") ends in a line feed that is not part of the text.
   std::string text = node->text.substr(0, node->text.find_last_not_of('\n') + 1);
   const bool is_one_line = text.find_first_of("\n\r\t") == std::string::npos;
   if (!is_one_line || find_text_problem(text)) {

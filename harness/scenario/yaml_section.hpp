@@ -1,5 +1,5 @@
-// Reading a tree of keys into values, noting everything that is wrong instead of stopping at the
-// first: each reader returns what was there, or the fallback and a noted problem.
+// Reads a tree of keys into values and notes all problems instead of stopping at the first: each
+// reader returns the value, or the fallback and a noted problem.
 //
 //   Problems problems("a.yaml");
 //   Section root(tree, problems);
@@ -25,17 +25,17 @@ namespace qsmpc::harness {
 /// The problems noted so far, in the order in which they were found.
 class Problems {
  public:
-  /// `file` is what they call the file; values given on the command line are in "--set" instead.
+  /// `file`: its name in problems; problems with values from the command line name "--set" instead.
   explicit Problems(std::string file) : file_(std::move(file)) {}
 
   /// Notes a problem with the value `node` of `key`.
   void add(const YamlNode& node, std::string key, std::string found, std::string expected);
-  /// Notes a problem that was found in another file.
+  /// Notes a problem of another file.
   void add(InputError::Where where);
 
   [[nodiscard]] bool empty() const { return list_.empty(); }
   [[nodiscard]] std::size_t size() const { return list_.size(); }
-  /// Those on the command line first, then by line.
+  /// The problems of the command line first, then by line.
   [[nodiscard]] std::vector<InputError::Where> sorted() const;
 
  private:
@@ -43,7 +43,7 @@ class Problems {
   std::vector<InputError::Where> list_;
 };
 
-/// Which numbers are allowed.
+/// A range of allowed numbers.
 struct NumberRange {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -53,10 +53,10 @@ struct NumberRange {
 inline constexpr NumberRange kNotNegative{.least = 0.0};
 inline constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
 
-inline constexpr std::size_t kLongestName = 100;   ///< bytes; a title, and part of file names
+inline constexpr std::size_t kLongestName = 100;   ///< bytes; for titles and parts of file names
 inline constexpr std::size_t kLongestPath = 1024;  ///< bytes
 
-/// Which whole numbers are allowed.
+/// A range of allowed whole numbers.
 struct WholeRange {
   int least = 0;
   int most = std::numeric_limits<int>::max();
@@ -68,22 +68,22 @@ struct NumberInterval {
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// One mapping of the tree, and its place in the whole. A section that is absent, or no mapping, is
-/// empty. Refers to the tree and the problems, which must outlive it.
+/// One mapping of the tree and its path. A section that is absent, or is not a mapping, is empty.
+/// Refers to the tree and the problems, which must outlive it.
 class Section {
  public:
   Section(const YamlNode& root, Problems& problems);
 
-  /// The mapping under `key`; reading it as one is noted as a problem when it is something else.
+  /// The mapping under `key`; a value of another type is noted as a problem.
   [[nodiscard]] Section section(const std::string& key);
   /// Item `index` of the list that `key` holds, as a mapping.
   [[nodiscard]] Section item(const std::string& key, std::size_t index);
-  /// How many items the list under `key` has; 0 without one.
+  /// The number of items in the list under `key`; 0 without a list.
   [[nodiscard]] std::size_t list_size(const std::string& key);
 
   [[nodiscard]] bool has(const std::string& key) const { return get(key) != nullptr; }
-  /// Whether the value of `key` was given on the command line: paths may then be relative to the
-  /// working folder, too.
+  /// Whether the value of `key` came from the command line: paths may then also be relative to the
+  /// working folder.
   [[nodiscard]] bool is_override(const std::string& key) const {
     return has(key) && get(key)->from_override;
   }
@@ -93,45 +93,45 @@ class Section {
   [[nodiscard]] bool present() const { return node_ != nullptr; }
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  /// Notes that `key` is missing, unless it is there. `expected` says what it should hold.
+  /// Notes that `key` is missing, if it is. `expected`: what it should hold.
   void require(const std::string& key, const std::string& expected);
 
   [[nodiscard]] double number(const std::string& key, double fallback, NumberRange range = {});
   [[nodiscard]] int whole(const std::string& key, int fallback, WholeRange range);
   [[nodiscard]] std::uint64_t seed(const std::string& key, std::uint64_t fallback);
   [[nodiscard]] bool flag(const std::string& key, bool fallback);
-  /// A scalar as it is written, of at most `longest` bytes and without control characters.
+  /// A scalar, verbatim, of at most `longest` bytes and without control characters.
   [[nodiscard]] std::string text(const std::string& key, const std::string& fallback,
                                  std::size_t longest);
-  /// A list of scalars, each as `text` takes them; empty without one.
+  /// A list of scalars, each as for `text`; empty without a list.
   [[nodiscard]] std::vector<std::string> texts(const std::string& key, std::size_t longest);
   /// A scalar that is one of `known`.
   [[nodiscard]] std::string name(const std::string& key, const std::string& fallback,
                                  const std::vector<std::string>& known);
   /// `size` finite numbers.
   [[nodiscard]] std::optional<Eigen::VectorXd> vector(const std::string& key, Eigen::Index size);
-  /// Finite numbers, as a list of rows. A list of numbers stands for a diagonal when rows == cols,
-  /// and otherwise for the only row when rows == 1.
+  /// Finite numbers, as a list of rows. A flat list of numbers is a diagonal when rows == cols, and
+  /// otherwise the only row when rows == 1.
   [[nodiscard]] std::optional<Eigen::MatrixXd> matrix(const std::string& key, Eigen::Index rows,
                                                       Eigen::Index cols);
   /// [lower, upper], lower < upper; ±infinity is allowed unless `finite`.
   [[nodiscard]] std::optional<NumberInterval> interval(const std::string& key, bool finite);
 
-  /// The value of `key` as it is in the tree; nullptr without one.
+  /// The raw node under `key`; nullptr without one.
   [[nodiscard]] const YamlNode* tree(const std::string& key) { return take(key); }
 
-  /// Notes a problem with what `key` holds (or with this section, if it holds nothing); `found`
-  /// defaults to a description of it.
+  /// Notes a problem with the value of `key` (or with this section, without a value); `found`
+  /// defaults to a description of the value.
   void note(const std::string& key, const std::string& expected, std::string found = "");
 
-  /// The same of item `index` of the list that `key` holds, or of the list where it is shorter.
+  /// The same for item `index` of the list under `key`, or for the list itself where it is shorter.
   void note_item(const std::string& key, std::size_t index, const std::string& expected,
                  std::string found = "");
 
   /// Notes a problem with this section as a whole.
   void note_here(const std::string& expected, std::string found);
 
-  /// Notes every key that no reader above has asked for, with the nearest that one has.
+  /// Notes every key that no reader above has asked for, suggesting the nearest key that one has.
   void refuse_unread();
 
   /// The dotted path of `key`.
@@ -148,13 +148,13 @@ class Section {
                                                        const std::string& expected);
 
   const YamlNode* node_;    // nullptr where the section is absent
-  const YamlNode* origin_;  // the nearest node that is there, for line numbers
+  const YamlNode* origin_;  // the nearest existing node, for line numbers
   std::string path_;
   Problems* problems_;
   std::vector<std::string> asked_;
 };
 
-/// The number that a scalar holds as YAML writes it (.inf included), or nothing.
+/// The number that a scalar represents in YAML (.inf included), or nothing.
 [[nodiscard]] std::optional<double> parse_number(const YamlNode& node);
 
 }  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// What YAML takes for a key without a "?" before it.
+// The limit for a YAML key without a "?" before it.
 constexpr std::size_t kLongestPlainKey = 1000;  // bytes; the parser's limit is 1024 characters
 
 bool is_word(std::string_view text) {

@@ -13,7 +13,7 @@ namespace qsmpc::harness {
 /// The shortest text that reads back as the same double.
 [[nodiscard]] std::string yaml_number(double value);
 
-/// Always quoted: no text can then be taken for a number, a null or the syntax around it. Control
+/// Always quoted, so that no text can be read as a number, a null or surrounding syntax. Control
 /// characters are escaped.
 [[nodiscard]] std::string quoted_yaml(std::string_view text);
 
@@ -23,13 +23,13 @@ namespace qsmpc::harness {
 /// [[a, b], [c, d]], row by row.
 [[nodiscard]] std::string yaml_rows(const Eigen::MatrixXd& matrix);
 
-/// A square matrix as its diagonal where that loses nothing, not even the sign of a zero; else by
+/// A square matrix as its diagonal where that is lossless, including the signs of zeros; else by
 /// rows.
 [[nodiscard]] std::string yaml_square(const Eigen::MatrixXd& matrix);
 
 /// A tree in flow style on one line, e.g. {x: [2, 4], name: "a b"}. It reads back as the same tree:
-/// what was quoted is quoted, and so is plain text that is more than a number or a name (which no
-/// reader tells from the quoted).
+/// quoted scalars stay quoted, and plain ones other than numbers and names become quoted (readers
+/// do not distinguish the two).
 [[nodiscard]] std::string yaml_flow(const YamlNode& node);
 
 }  // namespace qsmpc::harness

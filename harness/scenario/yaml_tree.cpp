@@ -22,8 +22,8 @@ int line_of(const YAML::Mark& mark) { return mark.line >= 0 ? mark.line + 1 : 0;
 
 constexpr const char* kColon = "a colon after the key";
 
-/// The lines of a text, to find the one where a colon is missing: the parser itself stumbles over
-/// the next.
+/// The lines of a text, for locating a missing colon: the parser reports the error only at the next
+/// line.
 class YamlLines {
  public:
   explicit YamlLines(const std::string& text) {
@@ -36,7 +36,8 @@ class YamlLines {
     }
   }
 
-  /// Whether line `number`, from 1, is words that a colon would make a key of.
+  /// Whether line `number`, from 1, consists of plain words, so that it could be a key without its
+  /// colon.
   [[nodiscard]] bool lacks_colon(int number) const {
     if (number < 1 || number > std::ssize(lines_)) return false;
     const std::string& line = at(number);
@@ -45,12 +46,12 @@ class YamlLines {
     return begin != std::string::npos && line.find_first_of(kOther) == std::string::npos;
   }
 
-  /// The line that lacks a colon where the parser gave up at line `number`; 0 for none.
+  /// The line without a colon that caused the parser's error at line `number`; 0 if none did.
   [[nodiscard]] int culprit(int number) const {
     if (lacks_colon(number)) return number;
     const int before = filled_before(number);
     if (!lacks_colon(before)) return 0;
-    // Not a text that goes on further to the right.
+    // Excludes a multi-line text, which continues at a deeper indent.
     const std::size_t indent = indent_of(before);
     return indent == indent_of(number) || indent == indent_of(filled_before(before)) ? before : 0;
   }
@@ -73,11 +74,11 @@ class YamlLines {
     return before;
   }
 
-  std::vector<std::string> lines_;  // without comments and what is blank at their end
+  std::vector<std::string> lines_;  // without comments and trailing blanks
 };
 
 // Builds the tree from the parser's events. yaml-cpp's own nodes are not used: they resolve
-// aliases, recurse without a bound of ours and keep no line of a missing value.
+// aliases, recurse without a limit of ours and do not keep the line of a missing value.
 class TreeBuilder : public YAML::EventHandler {
  public:
   TreeBuilder(std::string file, const YamlLines& lines) : file_(std::move(file)), lines_(lines) {}
@@ -89,7 +90,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     refuse_anchor(mark, anchor);
-    // A last line without a colon is a key without a value to the parser.
+    // To the parser, a last line without a colon is a key without a value.
     if (!open_.empty() && lines_.lacks_colon(open_.back().key_line)) {
       fail(open_.back().key_line, "", lines_.words(open_.back().key_line), kColon);
     }
@@ -130,7 +131,7 @@ class TreeBuilder : public YAML::EventHandler {
  private:
   struct Open {
     YamlNode node;
-    bool has_key = false;  // whether the last key still waits for its value
+    bool has_key = false;  // whether the last key still lacks its value
     int key_line = 0;      // of the last key
     std::unordered_set<std::string> seen{};
   };

@@ -12,11 +12,11 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kEventLevel = 0.0;  // is at it or below without the event
+constexpr double kEventLevel = 0.0;  // the levels of a path without the event are at most this
 
 struct Particle {
   SplitPath path{};
-  double most = 0.0;  // of its levels
+  double most = 0.0;  // the maximum of its levels
 };
 
 double most_of(const SplitPath& path) {
@@ -27,13 +27,13 @@ double most_of(const SplitPath& path) {
   return std::ranges::max(path.levels);
 }
 
-/// The first instant at which the path is above `level`, which it is at some.
+/// The first instant at which the path is above `level`; there must be one.
 std::size_t first_above(const SplitPath& path, double level) {
   const auto found = std::ranges::find_if(path.levels, [&](double at) { return at > level; });
   return static_cast<std::size_t>(found - path.levels.begin());
 }
 
-/// The seeds of `parent` below `instant`, and `seed` from it on.
+/// The seeds of `parent` before `instant`, and `seed` from that instant on.
 PathSeeds branched(const PathSeeds& parent, std::size_t instant, std::uint64_t seed) {
   PathSeeds seeds{.seed = parent.seed};
   for (const models::NoiseSeed& entry : parent.noise) {
@@ -73,7 +73,8 @@ class Splitting {
   }
 
  private:
-  /// Two words that belong to place `place` of a generation; the first paths are generation 0.
+  /// Two random words for particle `place` of a generation; generation 0 is that of the first
+  /// paths.
   [[nodiscard]] std::array<std::uint64_t, 2> words(std::uint64_t generation,
                                                    std::size_t place) const {
     std::array<std::uint64_t, 2> drawn{};
@@ -109,7 +110,7 @@ class Splitting {
     return true;
   }
 
-  /// The level that `killed` of the paths do not come above.
+  /// The `killed`-th smallest maximum: at least `killed` paths never exceed it.
   [[nodiscard]] double lowest_level() const {
     std::vector<double> levels;
     levels.reserve(particles_.size());
@@ -119,8 +120,8 @@ class Splitting {
     return *lowest;
   }
 
-  /// Gives up the paths that do not come above `level`, and branches others in their place; false
-  /// where that was stopped.
+  /// Kills the paths that never exceed `level` and replaces them by branches of the others. Returns
+  /// false if it was stopped.
   bool raise(double level) {
     std::vector<std::size_t> given_up;
     std::vector<std::size_t> parents;
@@ -135,7 +136,7 @@ class Splitting {
     }
     share_ *= static_cast<double>(parents.size()) / static_cast<double>(particles_.size());
     for (const std::size_t n : given_up) {
-      // The remainder prefers none by more than 2⁻⁴⁰.
+      // The modulo bias towards any parent is at most 2⁻⁴⁰.
       const auto [which, seed] = words(static_cast<std::uint64_t>(run_.levels), n);
       std::optional<Particle> child =
           branch(particles_[parents[which % parents.size()]], level, seed_of(seed));
@@ -148,14 +149,14 @@ class Splitting {
   [[nodiscard]] std::optional<Particle> branch(const Particle& parent, double level,
                                                std::uint64_t seed) {
     const std::size_t instant = first_above(parent.path, level);
-    // Nothing is drawn after the end of a path.
+    // A path that ends here draws nothing more: its branch would be a copy.
     if (instant + 1 == parent.path.levels.size()) return parent;
     std::optional<Particle> child = driven(branched(parent.path.seeds, instant, seed), false);
     if (child) require_repeated(parent.path, child->path, instant);
     return child;
   }
 
-  /// What a particle stands for.
+  /// The probability that each particle represents.
   [[nodiscard]] double weight() const { return share_ / static_cast<double>(particles_.size()); }
 
   void finish() {
@@ -170,7 +171,7 @@ class Splitting {
   const std::uint64_t seed_;
   const DrivePath& drive_;
   std::vector<Particle> particles_{};
-  double share_ = 1.0;  // of the probability that is still looked at
+  double share_ = 1.0;  // the probability that the current particles represent
   SplitRun run_{};
 };
 

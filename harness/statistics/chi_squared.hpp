@@ -1,10 +1,10 @@
-// Tails of the chi-squared law.
+// Tails of the chi-squared distribution.
 #pragma once
 
 namespace qsmpc::harness {
 
 /// Probability that a chi-squared variable with `degrees` ≥ 1 degrees of freedom exceeds `value` ≥
-/// 0; not a number where `value` is not finite. Throws std::domain_error for others.
+/// 0; NaN where `value` is not finite. Throws std::domain_error on other arguments.
 [[nodiscard]] double chi_squared_tail(double value, int degrees);
 
 }  // namespace qsmpc::harness

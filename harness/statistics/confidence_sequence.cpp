@@ -8,8 +8,8 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kPrior = 0.5;  // both parameters of the beta distribution that is mixed by
-constexpr int kHalvings = 60;   // of the range of a limit: to the last digits of a double
+constexpr double kPrior = 0.5;  // both parameters of the beta mixing distribution
+constexpr int kHalvings = 60;   // bisection steps: enough for full double precision
 
 double log_beta(double a, double b) {
   return boost::math::lgamma(a) + boost::math::lgamma(b) - boost::math::lgamma(a + b);
@@ -29,11 +29,12 @@ RateInterval confidence_sequence(std::int64_t events, std::int64_t trials, doubl
   if (trials == 0) return {};
   const auto seen = static_cast<double>(events);
   const auto others = static_cast<double>(trials - events);
-  // p is outside where its likelihood is not above this.
+  // p is outside the interval where its log-likelihood is at most this.
   const double least =
       log_beta(kPrior + seen, kPrior + others) - log_beta(kPrior, kPrior) + std::log1p(-confidence);
   const double rate = seen / (seen + others);
-  /// The last place between `outside` and the rate, which is inside, that is outside.
+  /// Bisects between `outside` and the observed rate, which is inside, for the outer side of the
+  /// limit.
   const auto limit = [&](double outside) {
     double inside = rate;
     for (int n = 0; n < kHalvings; ++n) {

@@ -8,9 +8,9 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr int kIntervals = 20'000;      // of the integral: finer than the peak of 10⁶ events
+constexpr int kIntervals = 20'000;  // of the quadrature: fine enough for the peak with 10⁶ events
 constexpr double kNegligible = 60.0;    // e⁻⁶⁰ of the peak adds nothing in double precision
-constexpr double kLargestTilt = 700.0;  // eᵗ is finite
+constexpr double kLargestTilt = 700.0;  // eᵗ is still finite
 
 /// Logarithm of the integrand.
 double log_density(const EventTally& tally, double tilt) {

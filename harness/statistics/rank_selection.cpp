@@ -14,9 +14,9 @@ constexpr unsigned kKeyBits = 64;
 constexpr unsigned kBitsPerPass = 16;
 constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
 
-/// Whole numbers in the order of the values.
+/// An order-preserving map from doubles to unsigned integers.
 std::uint64_t key_of(double value) {
-  const auto bits = std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value);  // −0 is 0
+  const auto bits = std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value);  // −0 counts as 0
   return (bits & kSign) != 0 ? ~bits : bits | kSign;
 }
 
@@ -24,11 +24,11 @@ double value_of(std::uint64_t key) {
   return std::bit_cast<double>((key & kSign) != 0 ? key & ~kSign : ~key);
 }
 
-/// Where a wanted value is known to be: among those whose keys begin with some bits.
+/// What is known of a wanted value: the leading bits of its key.
 struct Candidate {
   std::uint64_t prefix = 0;
-  std::int64_t rank = 0;   ///< among these
-  std::int64_t count = 0;  ///< how many these are
+  std::int64_t rank = 0;   ///< among the values with this prefix, from 1
+  std::int64_t count = 0;  ///< number of values with this prefix
 };
 
 class RankSelection {
@@ -62,7 +62,7 @@ class RankSelection {
     return sum;
   }
 
-  /// Reads the stream, and knows kBitsPerPass more bits of each.
+  /// Reads the stream and determines kBitsPerPass more bits of each wanted value.
   void narrow() {
     constexpr std::uint64_t kBuckets = std::uint64_t{1} << kBitsPerPass;
     std::map<std::uint64_t, std::vector<std::int64_t>> counts;
@@ -83,7 +83,7 @@ class RankSelection {
     known_bits_ += kBitsPerPass;
   }
 
-  /// Reads the stream, and sorts what may be meant.
+  /// Reads the stream and sorts the remaining candidates.
   [[nodiscard]] std::vector<double> sorted() const {
     std::map<std::uint64_t, std::vector<double>> kept;
     for (const Candidate& one : wanted_) kept[one.prefix];

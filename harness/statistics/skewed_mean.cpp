@@ -13,7 +13,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Of the mean of a lognormal law, from at least two logarithms of its numbers.
+/// Limits of the mean of a lognormal distribution, from the logarithms of at least two samples.
 RateInterval lognormal_mean(const std::vector<double>& logarithms, double tail) {
   const auto count = static_cast<double>(logarithms.size());
   const double mean = mean_of(logarithms);

@@ -5,7 +5,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// What spreadsheets take for the beginning of a formula, and run.
+// Characters that make spreadsheets evaluate a field as a formula.
 constexpr std::string_view kFormulaBegins = "=+-@\t\r";
 
 }  // namespace

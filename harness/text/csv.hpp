@@ -5,9 +5,9 @@
 
 namespace qsmpc::harness {
 
-/// `text` as one field: as it is, or quoted where it holds a comma, a quote or a line's end
-/// (RFC 4180). Text that a spreadsheet would take for a formula, beginning with = + - @ or a tab,
-/// gets an apostrophe before it and is quoted. Not for numbers.
+/// `text` as one field: unchanged, or quoted if it contains a comma, a quote or a line break (RFC
+/// 4180). Text that a spreadsheet would take for a formula, beginning with = + - @, a tab or a
+/// carriage return, is prefixed with an apostrophe and quoted. Not for numbers.
 [[nodiscard]] std::string csv_field(const std::string& text);
 
 }  // namespace qsmpc::harness

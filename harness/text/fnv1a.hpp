@@ -1,5 +1,5 @@
-// FNV-1a: a digest of bytes that is the same on every machine and in every version, and that any
-// single bit changes. It is no protection against anyone who wants two texts to have the same.
+// FNV-1a: a digest of bytes that is the same on every machine and in every version, and that
+// changes with any single bit. It does not resist deliberate collisions.
 #pragma once
 
 #include <concepts>
@@ -17,9 +17,9 @@ class Fnv1a {
     for (const char byte : bytes) add_byte(static_cast<unsigned char>(byte));
   }
 
-  /// The eight bytes of `number`, the lowest first.
+  /// Adds the eight bytes of `number`, least significant first.
   void add(std::uint64_t number) {
-    if (number < 256) {  // seven bytes that are 0 only multiply
+    if (number < 256) {  // the seven zero bytes only multiply
       state_ = (state_ ^ static_cast<Word>(number)) * kPrimeToTheEighth;
       return;
     }

@@ -1,4 +1,4 @@
-// JSON as the text of a file or of a command's output.
+// JSON as text of a file or of a command's output.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace qsmpc::harness {
 
-/// `json` indented by two spaces, ending in a new line. Names may come from files: bytes that are
-/// not UTF-8 become U+FFFD. Numbers that are not finite are null.
+/// `json` indented by two spaces, ending in a newline. Names may come from files: invalid UTF-8
+/// becomes U+FFFD. Non-finite numbers become null.
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& json);
 
-/// The same on one line, without a new line at its end.
+/// The same on one line, without a trailing newline.
 [[nodiscard]] std::string compact_json_text(const nlohmann::ordered_json& json);
 
 }  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr int kSmallestPlain = -3;  // exponents that are written out as a plain decimal
+constexpr int kSmallestPlain = -3;  // least exponent of a plain decimal
 constexpr int kLargestPlain = 5;
 constexpr const char* kMinus = "−";
 constexpr double kLeastPlainInTable = 1e-2;  // keeps two digits with three or four decimals
@@ -53,7 +53,7 @@ std::string format_short(double value, int digits) {
   std::string text = format_number(value, digits);
   const std::size_t point = text.find('.');
   if (point == std::string::npos) return text;
-  const std::size_t end = std::min(text.find(' '), text.size());  // of the decimals
+  const std::size_t end = std::min(text.find(' '), text.size());  // end of the decimals
   std::size_t kept = text.find_last_not_of('0', end - 1);
   if (kept == point) --kept;
   return text.erase(kept + 1, end - kept - 1);
@@ -78,8 +78,8 @@ std::string format_fixed(double value, int decimals) {
 
 std::string format_percent(double share) {
   constexpr double kPercent = 100.0;
-  constexpr double kLeast = 0.01;      // shown
-  constexpr double kMostBelow = 99.9;  // of three digits
+  constexpr double kLeast = 0.01;      // smallest value shown as a number
+  constexpr double kMostBelow = 99.9;  // largest value with three digits below 100
   if (std::isnan(share)) return "-";
   const double percent = kPercent * share;
   if (percent > 0.0 && percent < kLeast) return "<0.01";

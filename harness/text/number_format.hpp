@@ -1,32 +1,30 @@
-// Numbers as people read them: a true minus sign, powers of ten written out, no false digits.
+// Numbers formatted for people: a true minus sign, powers of ten written out, no spurious digits.
 #pragma once
 
 #include <string>
 
 namespace qsmpc::harness {
 
-/// `value` with `digits` significant digits; very large and very small ones as "1.2 × 10⁻⁵".
-/// What is not finite is "∞", "−∞" or "not a number".
+/// `value` with `digits` significant digits; very large and very small values as "1.2 × 10⁻⁵".
+/// Non-finite values are "∞", "−∞" or "not a number".
 [[nodiscard]] std::string format_number(double value, int digits = 3);
 
-/// As format_number, without zeros at the end of the decimals.
+/// As format_number, without trailing zeros after the decimal point.
 [[nodiscard]] std::string format_short(double value, int digits = 3);
 
-/// As format_short, rounded away from zero: what is shown of an upper bound is still one.
-/// value ≥ 0.
+/// As format_short, rounded up, so that a displayed upper bound is still one. value ≥ 0.
 [[nodiscard]] std::string format_bound(double value, int digits = 3);
 
-/// `value` with `decimals` digits after the point.
+/// `value` with `decimals` digits after the decimal point.
 [[nodiscard]] std::string format_fixed(double value, int decimals);
 
-/// A share of something, 0 to 1, in percent without the sign, with three significant digits and at
-/// most two decimals: "0" and "100" only for exactly 0 and 1, else "<0.01" and ">99.9" next to
-/// them;
-/// "-" for what is not a number.
+/// A share from 0 to 1 in percent, without the percent sign, with three significant digits and at
+/// most two decimals. "0" and "100" stand only for exactly 0 and 1; values close to them are
+/// "<0.01" and ">99.9". NaN is "-".
 [[nodiscard]] std::string format_percent(double share);
 
-/// Whether a table shows `value` as a plain decimal: zero, or of a size from 0.01 to below 10 000.
-/// Others, and what is not a number, take an exponent there or a mark.
+/// Whether a table shows `value` as a plain decimal: zero, or an absolute value from 0.01 to below
+/// 10 000. A table shows others with an exponent, and NaN as a mark.
 [[nodiscard]] bool is_plain_in_table(double value);
 
 /// "10⁻⁵".

@@ -5,7 +5,8 @@ namespace qsmpc::harness {
 std::optional<double> parse_decimal(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
-  // from_chars also knows a second sign and words such as "infinity".
+  // After the sign handled here, from_chars would accept a second one; it also accepts words such
+  // as "infinity".
   if (text.empty() || text.find_first_not_of("0123456789.eE+-") != std::string_view::npos ||
       text.front() == '-' || text.front() == '+') {
     return std::nullopt;

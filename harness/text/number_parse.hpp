@@ -1,4 +1,4 @@
-// Numbers that users write, read defensively: the whole text is the number, or there is none.
+// Defensive parsing of numbers that users write: the whole text must be the number.
 #pragma once
 
 #include <charconv>
@@ -9,8 +9,8 @@
 
 namespace qsmpc::harness {
 
-/// The integer that the whole of `text` is, in decimal digits after an optional '-' for signed
-/// types; nothing if it is something else or does not fit into `Integer`.
+/// The integer that `text` as a whole represents, in decimal digits after an optional '-' for
+/// signed types; nothing if it is anything else or does not fit into `Integer`.
 template <std::integral Integer>
 [[nodiscard]] std::optional<Integer> parse_integer(std::string_view text) {
   Integer value{};
@@ -20,8 +20,8 @@ template <std::integral Integer>
   return value;
 }
 
-/// The number that the whole of `text` is in decimal notation, e.g. "-1.5e3" or "+2"; nothing if it
-/// is something else, words such as "inf" included, or too large or small for a double.
+/// The number that `text` as a whole represents in decimal notation, e.g. "-1.5e3" or "+2"; nothing
+/// if it is anything else, including words such as "inf", or too large or small for a double.
 [[nodiscard]] std::optional<double> parse_decimal(std::string_view text);
 
 }  // namespace qsmpc::harness

@@ -7,7 +7,7 @@ namespace {
 
 constexpr unsigned char kFirstNotAscii = 0x80;
 
-/// Drops the last character where it has several bytes, so that none is cut in half.
+/// Drops the last character if it has several bytes, since the cut may have split it.
 void drop_long_character(std::string& line) {
   while (!line.empty() && !begins_utf8_character(line.back())) line.pop_back();
   if (!line.empty() && static_cast<unsigned char>(line.back()) >= kFirstNotAscii) line.pop_back();

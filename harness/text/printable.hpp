@@ -1,4 +1,4 @@
-// Foreign text made safe for one line of a terminal.
+// Untrusted text made safe for one line of a terminal.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Whether bytes are text that a person could have written: UTF-8 without stray control characters.
+// Whether bytes are plain text: UTF-8 without stray control characters.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@ struct TextProblem {
   std::string found;
 };
 
-/// The first byte of `text` that is not well-formed UTF-8, or a control character other than tab,
-/// line feed and a carriage return before one; nothing if there is none.
+/// The first byte of `text` that is not well-formed UTF-8, or that is a control character other
+/// than tab, line feed or a carriage return before a line feed; nothing if there is none.
 [[nodiscard]] std::optional<TextProblem> find_text_problem(std::string_view text);
 
 }  // namespace qsmpc::harness

@@ -7,8 +7,9 @@
 namespace qsmpc::harness {
 
 double estimated_width(const std::string& text, double size) {
-  constexpr double kWidthOfSize = 0.56;        // of a letter on average, with some to spare
-  constexpr unsigned char kThreeBytes = 0xE0;  // scripts whose characters may be square, and signs
+  constexpr double kWidthOfSize = 0.56;        // average letter width, with some margin
+  constexpr unsigned char kThreeBytes = 0xE0;  // scripts whose characters may be square, and
+                                               // symbols
   double width = 0.0;
   for (const char byte : text) {
     if (!begins_utf8_character(byte)) continue;

@@ -1,4 +1,4 @@
-// How wide texts are: about, in a drawing; in columns, on a terminal.
+// Widths of texts: approximate ones in drawings, columns on terminals.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +7,13 @@
 
 namespace qsmpc::harness {
 
-/// About how wide `text` is in a sans-serif font of `size`, rather more than less.
+/// Approximate width of `text` in a sans-serif font of `size`; errs on the wide side.
 [[nodiscard]] double estimated_width(const std::string& text, double size);
 
-/// `text` in lines of at most `columns` ≥ 1 characters, broken at spaces where there are some.
+/// `text` in lines of at most `columns` ≥ 1 characters, broken at spaces where possible.
 [[nodiscard]] std::vector<std::string> wrapped(const std::string& text, std::size_t columns);
 
-/// `text` with spaces after it up to `columns` characters; each character takes one column.
+/// `text` padded with trailing spaces to `columns` characters; each character takes one column.
 [[nodiscard]] std::string padded(std::string text, std::size_t columns);
 
 }  // namespace qsmpc::harness

@@ -23,7 +23,7 @@ std::size_t utf8_length(std::string_view text) {
     if (begins_utf8_character(text[i])) return 0;
     code = (code << 6U) | (byte(i) & 0x3FU);
   }
-  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};  // by length
+  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};  // least code point, by length
   const bool surrogate = code >= kFirstSurrogate && code <= kLastSurrogate;
   return code < kLeast[length] || code > kLastCodePoint || surrogate ? 0 : length;
 }

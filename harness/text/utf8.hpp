@@ -1,4 +1,4 @@
-// The structure of UTF-8: where characters begin and which bytes are none (RFC 3629).
+// The structure of UTF-8: where characters begin, and which bytes are invalid (RFC 3629).
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace qsmpc::harness {
 
-/// Bytes of the well-formed UTF-8 character at the start of `text`, 1 to 4; 0 where there is none.
-/// Overlong forms, surrogates and values above U+10FFFF are not well-formed.
+/// Length in bytes, 1 to 4, of the well-formed UTF-8 character at the start of `text`; 0 if there
+/// is none. Overlong forms, surrogates and values above U+10FFFF are not well-formed.
 /// text: not empty.
 [[nodiscard]] std::size_t utf8_length(std::string_view text);
 
@@ -16,10 +16,11 @@ namespace qsmpc::harness {
   return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
 }
 
-/// Characters in `text`, without checking that it is well-formed: bytes that begin one.
+/// Number of characters in `text`, counted as bytes that begin one, without checking that `text` is
+/// well-formed.
 [[nodiscard]] std::size_t utf8_characters(std::string_view text);
 
-/// Whether `byte` is a control character of ASCII: below the space, or delete.
+/// Whether `byte` is an ASCII control character: below the space, or delete.
 [[nodiscard]] constexpr bool is_control_character(char byte) {
   constexpr unsigned char kSpace = 0x20;
   constexpr unsigned char kDelete = 0x7F;

@@ -12,8 +12,8 @@
 namespace qsmpc::harness {
 namespace {
 
-/// How work goes to other threads and comes back, where the thread sanitizer can see it: TBB, which
-/// orders all of this by itself, is not compiled with it.
+/// Makes the handover of work to other threads and back visible to the thread sanitizer: TBB
+/// already orders these accesses, but is not compiled with the sanitizer.
 class Handover {
  public:
 #if QSMPC_THREAD_SANITIZER
@@ -39,7 +39,7 @@ controller::Executor executor_of(int threads) {
   if (threads == 1) return controller::run_in_turn;
   auto arena = std::make_shared<tbb::task_arena>(threads);
   return [arena](int count, controller::TaskRef task) {
-    if (count == 1) return task(0);  // it takes no other thread
+    if (count == 1) return task(0);  // no other thread is involved
     Handover handover;
     arena->execute([&] {
       tbb::parallel_for(0, count, [&](int n) {

@@ -1,18 +1,18 @@
-// The threads that the controller's loops over many particles are divided among.
+// The threads that run the controller's loops over many particles.
 //
-// TBB runs them, where other work has plain Workers: these loops are short, so that threads must be
-// kept between them; and they stand within each other, e.g. certificates within episodes, so that a
-// thread that waits for an inner loop must take its tasks rather than block.
+// These loops run on TBB, other work on plain Workers. The loops are short, so threads must be kept
+// between them. They are also nested, e.g. certificates within episodes, so a thread that waits for
+// an inner loop must take on its tasks rather than block.
 #pragma once
 
 #include "controller/parallel.hpp"
 
 namespace qsmpc::harness {
 
-/// Runs tasks on up to `threads` threads (≥ 1; throws std::invalid_argument else), the calling one
-/// among them; one thread runs them in turn. The threads live as long as the executor or a copy.
-/// What a task throws passes through, once all that have begun have ended; those that have not may
-/// then never run. If several throw, it is one of theirs.
+/// Runs tasks on up to `threads` threads (≥ 1; otherwise throws std::invalid_argument), including
+/// the calling one; a single thread runs them in turn. The threads live as long as the executor or
+/// a copy of it. An exception of a task is rethrown once all tasks that have begun have ended; the
+/// others may then never run. If several tasks throw, one of their exceptions is rethrown.
 [[nodiscard]] controller::Executor executor_of(int threads);
 
 }  // namespace qsmpc::harness

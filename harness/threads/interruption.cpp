@@ -5,7 +5,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// Signals are the whole process's, and so is this. Signal handlers may touch lock-free atomics.
+// Global, as signals concern the whole process. Signal handlers may access lock-free atomics.
 std::atomic<int> seen = 0;
 std::atomic<int> patience = 1;
 static_assert(std::atomic<int>::is_always_lock_free);

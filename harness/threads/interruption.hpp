@@ -1,4 +1,4 @@
-// Being asked to stop, by SIGINT or SIGTERM, where long stretches of work can hear it.
+// Interruption by SIGINT or SIGTERM, in a form that long computations can poll.
 //
 //   for (long k = 0; k < steps; ++k) {
 //     check_interrupts();
@@ -10,7 +10,7 @@
 
 namespace qsmpc::harness {
 
-/// Work was given up because the process was asked to stop. Exit code 130.
+/// Work was abandoned because the process was asked to stop. Exit code 130.
 class Interrupted : public std::exception {
  public:
   [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
@@ -19,18 +19,18 @@ class Interrupted : public std::exception {
 /// How often the process was asked to stop.
 [[nodiscard]] int interrupts() noexcept;
 
-/// Notes that the process was asked to stop, and returns how often it was. For signal handlers.
+/// Records a request to stop and returns the number of requests so far. For signal handlers.
 int note_interrupt() noexcept;
 
-/// As if the process had not been asked yet, for programs that go on after an interrupt.
+/// Resets the number of requests, for programs that continue after an interrupt.
 void forget_interrupts() noexcept;
 
 /// Throws Interrupted if the process was asked to stop: once, or as often as an InterruptPatience
-/// says. Costs next to nothing; may be called by several threads.
+/// requires. Costs next to nothing; may be called by several threads.
 void check_interrupts();
 
-/// Work that ends only at the `count`-th interrupt (≥ 1) while this lives, e.g. episodes of a
-/// campaign, which the first interrupt lets end.
+/// While it lives, only the `count`-th interrupt (≥ 1) ends work; e.g. the first interrupt lets the
+/// running episodes of a campaign finish.
 class InterruptPatience {
  public:
   explicit InterruptPatience(int count);

@@ -1,7 +1,7 @@
 #pragma once
 
 // Which sanitizer the code is compiled for: QSMPC_ADDRESS_SANITIZER and QSMPC_THREAD_SANITIZER are
-// 1 or 0. GCC says it by a macro of its own, Clang 14 by a feature only.
+// 1 or 0. GCC defines a macro for it; Clang 14 only has a feature test.
 #if defined(__has_feature)
 #define QSMPC_HAS_FEATURE(name) __has_feature(name)
 #else

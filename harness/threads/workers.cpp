@@ -7,7 +7,7 @@
 namespace qsmpc::harness {
 
 int available_threads() {
-  // 0 where the system does not tell.
+  // hardware_concurrency() is 0 if the system does not tell.
   return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 

@@ -1,11 +1,11 @@
-// Plain threads for work that shares itself out: each worker takes pieces until none is left.
+// Plain threads for self-scheduling work: each worker takes pieces until none are left.
 //
 //   std::atomic<int> next = 0;
 //   run_workers(available_threads(), [&](int) {
 //     for (int n = next++; n < count; n = next++) work_on(n);
 //   });
 //
-// Loops over many small tasks, nested ones above all, are an Executor's instead.
+// For loops over many small tasks, nested ones above all, use an Executor instead.
 #pragma once
 
 #include <exception>
@@ -16,31 +16,32 @@
 
 namespace qsmpc::harness {
 
-/// Threads that the processor runs at once, at least 1.
+/// Number of threads that the processor runs concurrently, at least 1.
 [[nodiscard]] int available_threads();
 
-/// How many of them to use where `asked` were asked for: all for 0 or fewer, and never more.
+/// How many of them to use if `asked` are requested: all of them for 0 or fewer, and never more
+/// than all.
 [[nodiscard]] int usable_threads(int asked);
 
-/// Threads that work while their owner does something else.
+/// Threads that run while their owner does other work.
 class Workers {
  public:
   /// Called once on each thread, with its number.
   using Work = std::function<void(int)>;
 
-  /// Starts `count` ≥ 0 threads, numbered from `first`. What `work` refers to outlives the Workers.
-  /// Throws std::system_error where the system has no more threads, once those that were started
-  /// have ended.
+  /// Starts `count` ≥ 0 threads, numbered from `first`. What `work` refers to must outlive the
+  /// Workers. If the system has no more threads, throws std::system_error once those already
+  /// started have ended.
   explicit Workers(int count, Work work, int first = 0);
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
   Workers(Workers&&) = delete;
   Workers& operator=(Workers&&) = delete;
-  /// Waits for the threads; what they threw and `join` did not throw again is lost.
+  /// Waits for the threads; exceptions that `join` has not rethrown are lost.
   ~Workers() = default;
 
-  /// Waits for all threads, then throws what the first one that failed threw. The others are not
-  /// told to stop: what they share has to say so.
+  /// Waits for all threads, then rethrows the exception of the first one that failed. The others
+  /// are not stopped; shared state has to tell them to stop.
   void join();
 
  private:
@@ -54,9 +55,9 @@ class Workers {
   std::vector<std::jthread> threads_;  // last: they use the rest
 };
 
-/// Calls work(0) … work(count − 1) at the same time, work(0) in the calling thread, and returns
-/// once all have ended. Throws what the first one that failed threw. count: ≥ 1; throws
-/// std::invalid_argument else.
+/// Calls work(0) … work(count − 1) concurrently, work(0) in the calling thread, and returns once
+/// all have ended. Rethrows the exception of the first one that failed. count: ≥ 1, otherwise
+/// throws std::invalid_argument.
 void run_workers(int count, const Workers::Work& work);
 
 }  // namespace qsmpc::harness

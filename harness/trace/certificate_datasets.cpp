@@ -37,7 +37,7 @@ std::vector<DatasetSpec> certificate_layout(std::optional<std::size_t> horizon) 
   };
   add_of_stages(kCertificateValuePath, kCertificateValueMeaning);
   for (const controller::CertificateEntry& entry : controller::certificate_entries()) {
-    // Plans that were driven do not have the others.
+    // Plans of a drive do not have the other bounds.
     if (horizon && !entry.in_control) continue;
     add_of_stages(certificate_path(entry), entry.meaning);
   }

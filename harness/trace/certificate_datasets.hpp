@@ -11,13 +11,13 @@
 
 namespace qsmpc::harness {
 
-/// Its datasets. With `horizon`, a row is a step and holds all stages (0 … horizon of budgets,
-/// 1 … horizon of certificates); without, a row is a stage.
+/// The datasets of the group. With `horizon`, a row is a step and holds all stages (budgets: 0 …
+/// horizon, certificates: 1 … horizon); without it, a row is a stage.
 [[nodiscard]] std::vector<DatasetSpec> certificate_layout(
     std::optional<std::size_t> horizon = std::nullopt);
 
-/// Appends `budgets` of stages 0 … horizon and `certificates` of stages 1 … horizon: one step, or
-/// all stages, as far as the layout has a dataset for them. Throws IoError.
+/// Appends `budgets` (stages 0 … horizon) and `certificates` (stages 1 … horizon), as one step or
+/// as one row per stage; bounds that the layout has no dataset for are skipped. Throws IoError.
 void append_certificates(Hdf5File& file, const std::vector<controller::StageBudget>& budgets,
                          const std::vector<controller::StageCertificate>& certificates);
 

@@ -1,5 +1,5 @@
-// The numbers of certificates and error budgets under the names that files use, so that what is
-// written, read and documented is one list.
+// The names that files use for the numbers of certificates and error budgets: a single list for
+// writing, reading and documentation.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ inline constexpr std::array<BudgetField, 4> kBudgetColumns = {{
   return names;
 }
 
-/// Where a bound, or what is shown beside the bounds, is.
+/// Path of the dataset of a bound, or of a value that is shown beside the bounds.
 [[nodiscard]] inline std::string certificate_path(const controller::CertificateEntry& entry) {
   return "/certificate/" + entry.dataset;
 }
@@ -42,8 +42,8 @@ inline constexpr const char* kCertificateValueMeaning =
     "model_error the plant's, is unsafe; the first is that of stage 1";
 
 inline constexpr const char* kDynamicsPath = "/certificate/dynamics";
-/// The budget's part that the scenario's model error has; not among the columns, so that traces
-/// without it are read as they are.
+/// The budget's share due to the scenario's model error. It is not one of the columns, so that
+/// traces without it remain readable.
 inline constexpr const char* kModelErrorPath = "/certificate/model";
 /// Unit of a W2 distance.
 inline constexpr const char* kStateNorm = "Euclidean norm of the state";

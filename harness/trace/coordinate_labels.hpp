@@ -1,4 +1,4 @@
-// Names and units of a system's coordinates as datasets carry them in their attributes.
+// Names and units of a system's coordinates, as stored in the attributes of datasets.
 #pragma once
 
 #include <string>

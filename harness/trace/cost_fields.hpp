@@ -1,5 +1,5 @@
-// The parts of a plan's expected cost under the names that files use, so that what is written and
-// read is one list.
+// The names that files use for the parts of a plan's expected cost: a single list for writing and
+// reading.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ namespace qsmpc::harness {
   return names;
 }
 
-/// The parts in the order of the columns.
+/// The cost parts in the order of the columns.
 [[nodiscard]] inline std::vector<double> cost_row(const controller::CostParts& cost) {
   std::vector<double> row(controller::cost_parts().size());
   for (std::size_t part = 0; part < row.size(); ++part) row[part] = cost[part];

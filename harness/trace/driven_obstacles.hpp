@@ -1,4 +1,4 @@
-// The obstacles of an episode that move: where they truly were, at any time.
+// The true poses of an episode's moving obstacles at any time.
 //
 //   const DrivenObstacles others(trace);
 //   const Eigen::Matrix3Xd poses = others.poses_at(1.25);
@@ -15,23 +15,25 @@
 
 namespace qsmpc::harness {
 
-/// Poses are an offset x, y (m) from where each is written and a turn (rad), 3 x count.
+/// A pose is an obstacle's offset x, y (m) from its position in the scenario and its rotation
+/// (rad); poses are 3 x count.
 class DrivenObstacles {
  public:
-  /// Takes what it needs of `trace`. They stand where they are written as far as it has no poses.
+  /// Copies what it needs from `trace`. Without recorded poses, obstacles stand where the scenario
+  /// places them.
   explicit DrivenObstacles(const Trace& trace);
 
   [[nodiscard]] bool empty() const { return shapes_.empty(); }
   [[nodiscard]] std::size_t count() const { return shapes_.size(); }
 
-  /// At each control instant, the end included where it is known; at least one.
+  /// The poses at each control instant, including the end where it is known; at least one entry.
   [[nodiscard]] const std::vector<Eigen::Matrix3Xd>& poses() const { return poses_; }
 
-  /// At `time` (s), which is clamped to these instants: linear between them, turned the shorter
-  /// way.
+  /// The poses at `time` (s), which is clamped to these instants: linear interpolation, rotating
+  /// the shorter way.
   [[nodiscard]] Eigen::Matrix3Xd poses_at(double time) const;
 
-  /// Obstacle n as it is written, and where these poses have it.
+  /// Obstacle n as the scenario has it, and at its pose among `poses`.
   [[nodiscard]] const controller::PlanarShape& shape(std::size_t n) const { return shapes_[n]; }
   [[nodiscard]] controller::PlanarShape shape_at(std::size_t n,
                                                  const Eigen::Matrix3Xd& poses) const;

@@ -44,7 +44,7 @@ bool ended_at_target(const Trace& trace) {
       return true;
     case Outcome::kCollision:
     case Outcome::kLeftBounds:
-      // A drive that stops where it is unsafe is over before it is asked whether it has arrived.
+      // A drive that stops when unsafe ends before arrival is checked.
       if (trace.scenario.stop_when_unsafe || trace.final_state.size() == 0) return false;
       return at_target(trace.scenario, trace.system, trace.final_state, final_progress(trace));
     case Outcome::kTimeout:

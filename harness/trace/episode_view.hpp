@@ -1,4 +1,4 @@
-// An episode as those see it who show or count it: what its trace says, worked out once.
+// An episode prepared for display and statistics: quantities derived from its trace, computed once.
 //
 //   const Trace trace = read_trace("out/episode.h5");
 //   const EpisodeView view(trace);
@@ -22,33 +22,33 @@ namespace qsmpc::harness {
 /// Refers to the trace, which must outlive it.
 class EpisodeView {
  public:
-  /// Throws std::invalid_argument on a trace that is not whole, which no reader returns.
+  /// Throws std::invalid_argument on an incomplete trace, which no reader returns.
   explicit EpisodeView(const Trace& trace);
 
   [[nodiscard]] const Trace& trace() const { return trace_; }
   [[nodiscard]] const Scenario& scenario() const { return trace_.scenario; }
   [[nodiscard]] const models::SystemDescription& system() const { return trace_.system; }
-  /// What the controller's decisions have.
+  /// Which parts the controller's decisions have.
   [[nodiscard]] const controller::DecisionParts& parts() const { return parts_; }
   [[nodiscard]] const Summary& summary() const { return summary_; }
 
-  /// s, from the start to the end of the last control period; 0 without steps.
+  /// Time from the start to the end of the last control period, s; 0 without steps.
   [[nodiscard]] double duration() const { return duration_; }
-  /// The true states at the control instants: state_dim x (steps + 1), or as many columns as there
-  /// are steps where the state after the last one is not known.
+  /// The true states at the control instants: state_dim x (steps + 1), or state_dim x steps if the
+  /// state after the last step is not known.
   [[nodiscard]] const Eigen::MatrixXd& states() const { return states_; }
-  /// The unit of distances to the unsafe set: that of the states which the safe set restricts, or
-  /// "state units" where they differ.
+  /// The unit of distances to the unsafe set: that of the states restricted by the safe set, or
+  /// "state units" if their units differ.
   [[nodiscard]] const std::string& clearance_unit() const { return clearance_unit_; }
-  /// Of each of these states from the unsafe set.
+  /// The distance of each of these states to the unsafe set.
   [[nodiscard]] const Eigen::VectorXd& clearances() const { return clearances_; }
-  /// s, of the first of these states that is unsafe; none where all are safe.
+  /// Time of the first unsafe one of these states, s; nothing if all are safe.
   [[nodiscard]] std::optional<double> first_unsafe_time() const;
-  /// How many periods the plant came through: those of which the state at the end is a result.
+  /// How many periods the plant completed, so that the state at their end is a result of the plant.
   [[nodiscard]] Eigen::Index periods() const { return residuals_.cols(); }
   /// Whether the true state at the end of period k < periods() is unsafe.
   [[nodiscard]] bool ended_unsafe(Eigen::Index k) const { return clearances_[k + 1] <= 0.0; }
-  /// x_{k+1} − w_k − f(x_k, u_k) of each of these periods, state_dim x periods.
+  /// x_{k+1} − w_k − f(x_k, u_k) for each of these periods, state_dim x periods.
   [[nodiscard]] const Eigen::MatrixXd& residuals() const { return residuals_; }
 
  private:

@@ -1,4 +1,4 @@
-// What files of numbers say about themselves at their root.
+// The metadata that numeric files carry as attributes of their root.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 namespace qsmpc::harness {
 
 struct FileHeader {
-  std::string kind{};         ///< of file, e.g. "prediction"; empty: not said
-  std::int64_t schema = 0;    ///< grows with every change that an older reader would misread
+  std::string kind{};         ///< of the file, e.g. "prediction"; empty if not stated
+  std::int64_t schema = 0;    ///< incremented by every change that an older reader would misread
   std::string version;        ///< of the program
   std::string scenario_text;  ///< the resolved scenario as YAML
   std::string scenario_name;
   std::uint64_t seed = 0;
 };
 
-/// Writes it as attributes of "/". Throws IoError.
+/// Writes `header` as attributes of "/". Throws IoError.
 void write_file_header(Hdf5File& file, const FileHeader& header);
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-// Hdf5File: files as a whole. What is in them is written in hdf5_writing.cpp and read in
+// Hdf5File: opening and closing files. Their content is written in hdf5_writing.cpp and read in
 // hdf5_reading.cpp.
 #include "harness/trace/hdf5_file.hpp"
 
@@ -15,11 +15,13 @@ namespace {
 using hdf5::Handle;
 using hdf5::Lock;
 
-/// Nothing that has a checksum crosses a boundary of so many bytes: a page of memory. A write that
-/// crosses one is torn there when the process is killed in it; one that does not is never.
+/// Nothing with a checksum crosses a boundary of this many bytes: a page of memory. If the process
+/// is killed during a write that crosses a page boundary, the write is torn there; a write within
+/// one page never is.
 constexpr hsize_t kPage = 4096;
-/// How often a checksum that does not fit is taken for a writer at work. HDF5 waits twice as long
-/// after each attempt, from 1 ns on: together 1 ms, where its own default of 100 never ends.
+/// How often a wrong checksum is attributed to a concurrent writer and the read retried. HDF5
+/// doubles its wait after each attempt, starting from 1 ns: 1 ms in total. Its default of 100
+/// attempts would never end.
 constexpr unsigned kReadAttempts = 20;
 
 }  // namespace
@@ -35,7 +37,7 @@ Hdf5File Hdf5File::create(const std::string& path) {
   impl->path = path;
   impl->writing = true;
   {
-    // HDF5 would follow a symbolic link and empty what it points to; this refuses it.
+    // HDF5 would follow a symbolic link and truncate its target; RandomAccessFile refuses links.
     const RandomAccessFile plain(path);
   }
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
@@ -44,7 +46,7 @@ Hdf5File Hdf5File::create(const std::string& path) {
                                          /*persist=*/false, /*threshold=*/1),
               "/");
   impl->check(H5Pset_file_space_page_size(creation.get(), kPage), "/");
-  // Attributes in a heap of their own: in the header a text could have 64 KiB at most.
+  // Attributes go into a separate heap: in the object header a text could have at most 64 KiB.
   impl->check(H5Pset_attr_phase_change(creation.get(), 0, 0), "/");
   const Handle access = hdf5::file_access();
   impl->file =
@@ -62,8 +64,8 @@ Hdf5File Hdf5File::open(const std::string& path) {
   auto impl = std::make_unique<Impl>();
   impl->path = path;
   impl->left_open = hdf5::opened_for_writing(path);
-  // HDF5 refuses to open a file that its writer left open in any other way, and in this one it does
-  // not compare the file's length with the stored one, so that it serves for nothing else.
+  // This is the only mode in which HDF5 opens a file that its writer left open. It skips the check
+  // of the file's length against the stored one, so it is used for nothing else.
   const unsigned flags = H5F_ACC_RDONLY | (impl->left_open ? H5F_ACC_SWMR_READ : 0U);
   const Handle access = hdf5::file_access();
   if (impl->left_open) {
@@ -79,7 +81,7 @@ void Hdf5File::begin_streaming() {
 }
 
 void Hdf5File::end_streaming() {
-  // Closing is what clears the superblock's flags of an open writer.
+  // Closing clears the superblock's flags of an open writer.
   close();
   const Lock lock;
   impl_->file = impl_->checked(

@@ -1,5 +1,5 @@
-// The one place that talks to HDF5: files made of groups, of datasets that grow row by row, and of
-// attributes. None of HDF5's types are in this interface.
+// The only interface to HDF5: files of groups, of datasets that grow row by row, and of attributes.
+// It exposes none of HDF5's types.
 //
 //   auto file = Hdf5File::create("a.h5");
 //   file.create_dataset({.path = "/plant/time", .axes = {"step"}, .units = {"s"}});
@@ -8,10 +8,10 @@
 //   file.flush();
 //   file.close();
 //
-// HDF5 as distributions package it is not safe for threads, so every call holds one lock of the
-// process. A file being written uses HDF5's single-writer-multiple-reader mode: it orders writes so
-// that the file on disk is consistent at every moment, where a plain flush leaves a file that is
-// corrupt when the process dies between two flushes.
+// HDF5 as packaged by distributions is not thread-safe, so every call holds one process-wide lock.
+// A file being written uses HDF5's single-writer-multiple-reader mode, which orders writes so that
+// the file on disk is consistent at every moment. With plain flushes alone, the file would be
+// corrupt if the process died between two of them.
 #pragma once
 
 #include <cstddef>
@@ -23,69 +23,70 @@
 
 namespace qsmpc::harness {
 
-/// A dataset: its name, what a row is, and what it means. Its shape is rows x row_shape, and it
-/// begins without rows.
+/// A dataset: its name, the layout of a row, and its meaning. Its shape is rows x row_shape;
+/// initially it has no rows.
 struct DatasetSpec {
   enum class Type { kFloat64, kInt64, kText };
 
   std::string path;  ///< absolute, e.g. "/plant/state"
   Type type = Type::kFloat64;
-  std::vector<std::size_t> row_shape{};  ///< empty where a row is one number
+  std::vector<std::size_t> row_shape{};  ///< empty if a row is one number
   std::vector<std::string> axes;         ///< attribute `axes`: a name for each dimension
-  std::vector<std::string> units;        ///< attribute `units`: one for all, or one a column
+  std::vector<std::string> units;        ///< attribute `units`: one for all, or one per column
   std::vector<std::string> columns{};    ///< attribute `columns`: names along the last axis
-  std::string comment{};                 ///< attribute `comment`, where it is not empty
+  std::string comment{};                 ///< attribute `comment`, unless empty
   std::size_t chunk_rows = 64;           ///< rows stored together
   bool compress = false;                 ///< shuffle and deflate
 };
 
-/// Bytes that an element of Type::kText has room for.
+/// Size of an element of Type::kText, bytes.
 inline constexpr std::size_t kTextBytes = 32;
 
-/// An open HDF5 file, either written from new or read. Movable; closes itself.
-/// Every writing function throws IoError, every reading one InputError; both say the path and what
-/// the system or HDF5 said.
+/// An open HDF5 file, either newly written or read. Movable; closes itself.
+/// Every writing function throws IoError, every reading function InputError; both give the path and
+/// the message of the system or of HDF5.
 class Hdf5File {
  public:
-  /// A new file at `path`; what was there is overwritten.
+  /// Creates a file at `path`, overwriting any that exists.
   [[nodiscard]] static Hdf5File create(const std::string& path);
-  /// The file at `path`, to be read; also one whose writer was killed. Throws IoError where the
-  /// system refuses to read a file that exists.
+  /// Opens the file at `path` for reading, even one whose writer was killed. Throws IoError if the
+  /// system refuses to read an existing file.
   [[nodiscard]] static Hdf5File open(const std::string& path);
 
   Hdf5File(Hdf5File&& other) noexcept;
   Hdf5File& operator=(Hdf5File&& other) noexcept;
   ~Hdf5File();
 
-  /// Makes the group and those above it.
+  /// Creates the group and its parents.
   void create_group(const std::string& path);
-  /// Makes the dataset and the groups above it.
+  /// Creates the dataset and its parent groups.
   void create_dataset(const DatasetSpec& spec);
-  /// Attributes of a group or dataset ("/" is the root); one that exists is replaced.
+  /// Sets an attribute of a group or dataset ("/" is the root), replacing one that exists.
   void set_text(const std::string& object, const std::string& name, const std::string& value);
   void set_texts(const std::string& object, const std::string& name,
                  const std::vector<std::string>& values);
-  /// At least one.
+  /// `values` is not empty.
   void set_numbers(const std::string& object, const std::string& name,
                    std::span<const double> values);
   void set_integer(const std::string& object, const std::string& name, std::int64_t value);
   void set_unsigned(const std::string& object, const std::string& name, std::uint64_t value);
 
-  /// From here on the file is consistent on disk at every moment, and no object or attribute can
-  /// be made or changed until `end_streaming`.
+  /// From here on the file is consistent on disk at every moment. No object or attribute can be
+  /// created or changed until `end_streaming`.
   void begin_streaming();
   void end_streaming();
 
-  /// Sets the number of columns of a rank-2 dataset that was made with none and has no rows yet.
+  /// Sets the number of columns of a rank-2 dataset that was created with none and has no rows yet.
   void set_columns(const std::string& path, std::size_t columns);
-  /// Appends whole rows; `values.size()` is a multiple of a row's size (std::invalid_argument).
+  /// Appends whole rows; throws std::invalid_argument unless `values.size()` is a multiple of a
+  /// row's size.
   void append(const std::string& path, std::span<const double> values);
   void append(const std::string& path, std::span<const std::int64_t> values);
   /// Throws std::invalid_argument on a text of more than `kTextBytes` bytes.
   void append(const std::string& path, std::span<const std::string> values);
-  /// Hands everything that was appended to the system.
+  /// Passes everything appended so far to the operating system.
   void flush();
-  /// Closes a written file for good; after it, the file may only be destroyed.
+  /// Closes a written file for good; afterwards the object may only be destroyed.
   void close();
 
   [[nodiscard]] const std::string& path() const;
@@ -102,7 +103,7 @@ class Hdf5File {
   [[nodiscard]] std::int64_t integer(const std::string& object, const std::string& name) const;
   [[nodiscard]] std::uint64_t unsigned_integer(const std::string& object,
                                                const std::string& name) const;
-  /// A group in the root.
+  /// Whether the root has the group `path`.
   [[nodiscard]] bool has_group(const std::string& path) const;
   [[nodiscard]] bool has_dataset(const std::string& path) const;
   /// Lengths of a dataset's dimensions.

@@ -16,15 +16,15 @@ namespace qsmpc::harness::hdf5 {
 namespace {
 
 std::recursive_mutex& mutex() {
-  // Never destroyed: a file may still close itself while the process's statics are torn down.
+  // Never destroyed: a file may still close itself during the destruction of static objects.
   static auto* const instance = new std::recursive_mutex;
   return *instance;
 }
 
 std::atomic<bool> files_abandoned = false;
 
-/// In place of the library's own clean-up, which would write once more what a full disk refused,
-/// and crash.
+/// Replaces the library's own clean-up, which would retry the writes that a full disk refused, and
+/// crash.
 void clean_up() {
   if (!files_abandoned) H5close();
 }
@@ -70,10 +70,10 @@ Handle text_type(std::size_t bytes) {
 
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  // One format, whatever later version of the library this is built with.
+  // Fixes the file format, even if built with a later version of the library.
   H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
   H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
-  // A file system that knows no locks is no reason to refuse.
+  // A file system without locks is accepted.
   H5Pset_file_locking(access.get(), /*use_file_locking=*/true, /*ignore_when_disabled=*/true);
   return access;
 }

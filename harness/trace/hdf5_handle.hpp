@@ -1,4 +1,4 @@
-// HDF5's identifiers as owned values, for the sources of `hdf5_file.hpp` alone.
+// Owning wrappers of HDF5's identifiers, only for the sources of `hdf5_file.hpp`.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace qsmpc::harness::hdf5 {
 
-/// HDF5's lock; taking it also silences the printing of its error stack.
+/// The lock that guards HDF5. Taking it also turns off the printing of HDF5's error stack.
 class Lock {
  public:
   Lock();
@@ -44,16 +44,18 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Gives up what cannot be closed any more; HDF5 keeps it until the process ends.
+/// Gives up an identifier that cannot be closed any more; HDF5 keeps it until the process ends.
 void abandon(Handle& handle);
-/// The innermost message of HDF5's error stack; the system's own words alone where it has them.
+/// The innermost message of HDF5's error stack, reduced to the system's error message if it
+/// contains one.
 [[nodiscard]] std::string error_words();
-/// The type of texts of `bytes` bytes, or H5T_VARIABLE.
+/// The type of texts of `bytes` bytes; `bytes` may be H5T_VARIABLE.
 [[nodiscard]] Handle text_type(std::size_t bytes);
-/// How files are opened: the format's version, locks, and what closing one closes with it.
+/// File access properties: the format's version, file locks, and that closing a file closes all of
+/// its objects.
 [[nodiscard]] Handle file_access();
-/// Whether the superblock's flags say that a writer has the file open. Throws InputError where
-/// there is no file, and IoError where it cannot be read.
+/// Whether the superblock's flags say that a writer has the file open. Throws InputError if there
+/// is no file, and IoError if it cannot be read.
 [[nodiscard]] bool opened_for_writing(const std::string& path);
 
 }  // namespace qsmpc::harness::hdf5

@@ -1,4 +1,4 @@
-// What an Hdf5File holds, for the sources that make up `hdf5_file.hpp` alone.
+// The implementation of Hdf5File, only for the sources of `hdf5_file.hpp`.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace qsmpc::harness {
 
-/// Its functions are called under HDF5's lock; those that fail throw as Hdf5File does.
+/// Its functions require HDF5's lock to be held; they throw as Hdf5File does.
 struct Hdf5File::Impl {
   std::string path;
   bool writing = false;
@@ -25,8 +25,8 @@ struct Hdf5File::Impl {
 
   ~Impl() {
     const hdf5::Lock lock;
-    // Closing a file whose disk is full makes HDF5 write again what it could not, fail again and
-    // free half of what it holds; such a file is left to the end of the process.
+    // Closing a file on a full disk makes HDF5 retry the failed writes, fail again and free only
+    // half of its resources. Such a file is left open until the process ends.
     for (auto& [name, dataset] : datasets) let_go(dataset);
     let_go(file);
   }

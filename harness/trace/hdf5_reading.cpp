@@ -1,4 +1,4 @@
-// Hdf5File: datasets and attributes are read, of files that may be damaged or hostile.
+// Hdf5File: reading of datasets and attributes from files that may be damaged or hostile.
 #include <algorithm>
 #include <cstring>
 
@@ -14,10 +14,10 @@ using hdf5::Handle;
 using hdf5::Lock;
 using hdf5::text_type;
 
-/// More elements than this (4 GiB) in one dataset come from a damaged or hostile file.
+/// More elements than this (4 GiB) in one dataset indicate a damaged or hostile file.
 constexpr hsize_t kElementLimit = hsize_t{1} << 29;
 
-/// Texts of `length` bytes each, shorter ones padded with zeros.
+/// Splits `padded` into texts of `length` bytes each; shorter ones are padded with zeros.
 std::vector<std::string> texts_in(const std::string& padded, std::size_t length) {
   std::vector<std::string> texts;
   for (std::size_t at = 0; at < padded.size(); at += length) {
@@ -34,7 +34,7 @@ void Hdf5File::Impl::read_attribute(const std::string& object, const std::string
   const Handle attribute = attribute_of(object, name);
   const Handle stored = checked(H5Aget_type(attribute.get()), H5Tclose, what);
   const Handle space = checked(H5Aget_space(attribute.get()), H5Sclose, what);
-  // What follows writes through `values`, so it must not read more than so many of this type.
+  // H5Aread writes through `values`: the attribute must have exactly `count` elements of this type.
   if (H5Tget_class(stored.get()) != H5Tget_class(type) ||
       H5Tis_variable_str(stored.get()) != H5Tis_variable_str(type) ||
       H5Sget_simple_extent_npoints(space.get()) != static_cast<hssize_t>(count)) {
@@ -48,7 +48,8 @@ void Hdf5File::Impl::read_attribute(const std::string& object, const std::string
   check(H5Aread(attribute.get(), type, values), what);
 }
 
-/// At most as many as may be read; `read_attribute` refuses where there are others.
+/// Number of elements, capped at the number that may be read; `read_attribute` rejects an attribute
+/// with a different number.
 hsize_t Hdf5File::Impl::attribute_length(const std::string& object, const std::string& name,
                                          std::size_t element_bytes) const {
   const Handle attribute = attribute_of(object, name);

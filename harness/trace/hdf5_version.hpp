@@ -4,7 +4,7 @@
 
 namespace qsmpc::harness {
 
-/// Of the HDF5 that is linked, e.g. "1.10.8".
+/// Version of the linked HDF5, e.g. "1.10.8".
 [[nodiscard]] std::string hdf5_version();
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-// Hdf5File: groups, datasets and attributes are written.
+// Hdf5File: writing of groups, datasets and attributes.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -15,7 +15,7 @@ using hdf5::Handle;
 using hdf5::Lock;
 using hdf5::text_type;
 
-/// Deflate's level: higher ones take longer and gain under 1 % on floating-point particles.
+/// Deflate level: higher levels take longer and save less than 1 % on floating-point particles.
 constexpr unsigned kDeflateLevel = 2;
 /// Columns stored together in a dataset whose number of columns is set later.
 constexpr hsize_t kOpenColumnChunk = 8;
@@ -28,7 +28,7 @@ void Hdf5File::Impl::open_groups_above(const std::string& path_of_object) {
     const std::string group = path_of_object.substr(0, at);
     if (H5Lexists(file.get(), group.c_str(), H5P_DEFAULT) > 0) continue;
     const Handle plain(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-    // Times of creation would make equal runs differ.
+    // Creation times would make equal runs differ.
     check(H5Pset_obj_track_times(plain.get(), false), group);
     checked(H5Gcreate2(file.get(), group.c_str(), H5P_DEFAULT, plain.get(), H5P_DEFAULT), H5Gclose,
             group);
@@ -114,8 +114,8 @@ void Hdf5File::create_dataset(const DatasetSpec& spec) {
   if (!spec.comment.empty()) set_text(spec.path, "comment", spec.comment);
 }
 
-// Texts have a fixed length: those of variable length live in a global heap, the one part of a file
-// that has no checksum, and a damaged one can make the library run in circles.
+// Texts have a fixed length. Texts of variable length are stored in the global heap, the only part
+// of a file without a checksum; a damaged heap can send the library into an endless loop.
 void Hdf5File::set_text(const std::string& object, const std::string& name,
                         const std::string& value) {
   const Lock lock;

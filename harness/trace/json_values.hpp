@@ -27,7 +27,7 @@ namespace qsmpc::harness {
   return {interval.lower, interval.upper};
 }
 
-/// Whether certificates are bounds, and why not: `why` as of why_no_bound.
+/// Whether certificates are bounds, and if not, why: `why` is the result of why_no_bound.
 [[nodiscard]] inline nlohmann::ordered_json scope_json(const std::string& why) {
   nlohmann::ordered_json json{{"holds", why.empty()}, {"reason", nullptr}};
   if (!why.empty()) json["reason"] = why;

@@ -9,7 +9,8 @@
 namespace qsmpc::harness {
 namespace {
 
-// x⁺ − w − f(x, u) with x⁺ = f(x, u) + w rounds three times, by half a unit each; with a margin.
+// x⁺ − w − f(x, u) with x⁺ = f(x, u) + w rounds three times, by half a unit in the last place each;
+// the rest is a margin.
 constexpr double kRoundings = 4.0;
 
 }  // namespace

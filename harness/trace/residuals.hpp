@@ -1,4 +1,4 @@
-// What of a plant's motion the planner's model does not explain.
+// The part of a plant's motion that the planner's model does not explain.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,21 +8,21 @@
 
 namespace qsmpc::harness {
 
-/// x_{k+1} − w_k − f(x_k, u_k) of the period of `step`, in the units of the states: state_dim. w is
-/// the disturbance that was added, so that an exact model leaves only rounding. `model` is f, and
-/// `next_state` x_{k+1}.
+/// x_{k+1} − w_k − f(x_k, u_k) for the period of `step`, in the units of the states: state_dim. w
+/// is the added disturbance, so for an exact model only rounding remains. `model` is f, and
+/// `next_state` is x_{k+1}.
 [[nodiscard]] Eigen::VectorXd one_step_residual(const models::Dynamics& model,
                                                 const StepRecord& step,
                                                 const Eigen::VectorXd& next_state);
 
-/// Of a period whose end is not known: not a number, `state_dim` times.
+/// The residual of a period whose end is not known: `state_dim` NaNs.
 [[nodiscard]] Eigen::VectorXd unknown_residual(Eigen::Index state_dim);
 
-/// Root mean squares of residuals up to which they are rounding, and the plant is the model: by
-/// state (state_dim), for states up to `magnitude` (state_dim) in size.
+/// Root mean squares up to which residuals are attributed to rounding, and the plant equals the
+/// model: per state (state_dim), for states of absolute value up to `magnitude` (state_dim).
 [[nodiscard]] Eigen::VectorXd residual_rounding(const Eigen::VectorXd& magnitude);
 
-/// Gives every step of `trace` its residual, for a trace that was recorded without them.
+/// Sets the residual of every step of `trace`, which was recorded without residuals.
 void add_residuals(Trace& trace, const models::Dynamics& model);
 
 }  // namespace qsmpc::harness

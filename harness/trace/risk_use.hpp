@@ -1,4 +1,4 @@
-// What a drive's certificates come to, held against the limits of its scenario (`risk`).
+// A drive's certificates compared with the limits of its scenario (`risk`).
 #pragma once
 
 #include <limits>
@@ -9,23 +9,23 @@
 
 namespace qsmpc::harness {
 
-/// One limit, and what is certified of what it limits.
+/// One limit, and the certified bound of the probability that it limits.
 struct CertifiedRisk {
   double limit = std::numeric_limits<double>::infinity();  ///< infinite for none
-  double certified = 0.0;  ///< an upper bound of a probability; the largest, of many
-  int exceeded = 0;        ///< periods in which it is above the limit
+  double certified = 0.0;  ///< an upper bound of a probability; the maximum if there are several
+  int exceeded = 0;        ///< number of periods in which the bound is above the limit
 
   [[nodiscard]] bool is_limited() const { return limit < std::numeric_limits<double>::infinity(); }
 };
 
 struct RiskUse {
-  CertifiedRisk stage;  ///< of each stage of a period's plan
-  CertifiedRisk plan;   ///< of their sum, at most 1
-  /// Of the sum of the next steps' certificates up to a period, not capped; of all when the drive
-  /// has ended.
+  CertifiedRisk stage;  ///< each stage of a period's plan
+  CertifiedRisk plan;   ///< their sum, capped at 1
+  /// The sum of the next-step certificates up to a period, not capped; at the end of a drive, over
+  /// all of its periods.
   CertifiedRisk mission;
-  /// Periods in which any limit is exceeded: by the period's plan (exceeds_limits), or by the drive
-  /// up to its end.
+  /// Number of periods in which any limit is exceeded: by the period's plan (exceeds_limits), or by
+  /// the drive up to the period's end.
   int exceeded_periods = 0;
 
   [[nodiscard]] bool any_limit() const {
@@ -33,12 +33,13 @@ struct RiskUse {
   }
 };
 
-/// Of a drive that makes no plans a period's plan is its next step. By the certificates in the
-/// trace, which are never above those that the planner kept to its limits.
+/// Evaluates the certificates in the trace, which are never above those that the planner kept
+/// within its limits. If a drive makes no plans, a period's plan is its next step.
 [[nodiscard]] RiskUse risk_use(const Trace& trace);
 
-/// Whether a period's plan exceeds a limit: by its status (`risk_exceeded`), where the planner
-/// keeps to limits, or by its certificates. The mission's limit counts in the status alone.
+/// Whether a period's plan exceeds a limit, according to its status (`risk_exceeded`, if the
+/// planner enforces limits) or to its certificates. The mission limit enters only through the
+/// status.
 [[nodiscard]] bool exceeds_limits(const StepRecord& step, const Scenario::Risk& limits);
 
 }  // namespace qsmpc::harness

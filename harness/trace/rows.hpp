@@ -1,4 +1,4 @@
-// Matrices as the rows of numbers that datasets are made of.
+// Conversion of matrices to the rows of numbers that datasets consist of.
 #pragma once
 
 #include <cstddef>

@@ -10,7 +10,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// How many periods from the first on have a measurement of each obstacle.
+// Number of periods, from the first on, that have a measurement of every obstacle.
 std::size_t seen_periods(const Trace& trace, Eigen::Index obstacles) {
   const auto unseen =
       std::find_if(trace.steps.begin(), trace.steps.end(), [&](const StepRecord& step) {

@@ -44,9 +44,9 @@ void add_clearance(const EpisodeView& view, Summary& summary) {
   summary.collision = summary.min_clearance <= 0.0;
 }
 
-/// What happened between the control instants, as far as the plant says.
+/// Adds what the plant reports from between the control instants.
 void add_between(const Trace& trace, Summary& summary) {
-  bool touches = false;  // in the period before
+  bool touches = false;  // in the previous period
   for (const StepRecord& step : trace.steps) {
     if (!std::isnan(step.clearance_between)) {
       summary.unsafe_between =
@@ -172,7 +172,7 @@ nlohmann::ordered_json timing_json(const Summary& summary) {
             {"certify", summary.breakdown.certify}}}};
 }
 
-/// `exceeded` in the words of the kind of limit: a number of periods, or whether.
+/// `exceeded` depends on the kind of limit: a number of periods or a truth value.
 nlohmann::ordered_json risk_json(const CertifiedRisk& risk, nlohmann::ordered_json exceeded) {
   nlohmann::ordered_json json{{"limit", nullptr}, {"certified_max", risk.certified}};
   if (risk.is_limited()) json["limit"] = risk.limit;
@@ -192,7 +192,7 @@ void add_risk(const RiskUse& risk, nlohmann::ordered_json& json) {
 
 namespace {
 
-/// State less what is wanted of it.
+/// State minus its reference.
 Eigen::VectorXd offset_from_target(const Scenario& scenario, const Eigen::VectorXd& state,
                                    std::optional<double> progress) {
   const Scenario::Target& target = scenario.target;

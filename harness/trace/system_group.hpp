@@ -13,7 +13,7 @@ void write_system(Hdf5File& file, const models::SystemDescription& system);
 /// Whether the file has the group: traces of earlier versions do not.
 [[nodiscard]] bool has_system(const Hdf5File& file);
 
-/// What `write_system` wrote. Throws InputError on a group that is damaged or contradicts itself.
+/// Reads what `write_system` wrote. Throws InputError on a damaged or inconsistent group.
 [[nodiscard]] models::SystemDescription read_system(const Hdf5File& file);
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-// How far a drive has come along the path of its scenario, and its laps; or which waypoints it has
+// A drive's progress along the path of its scenario, and its laps; or the waypoints that it has
 // passed, and when.
 #pragma once
 
@@ -13,20 +13,20 @@
 
 namespace qsmpc::harness {
 
-/// Follows a vehicle along a path from period to period, so that it is never taken to be on
-/// another stretch that is nearer by; or over waypoints, which are passed in turn. Without either
-/// it knows nothing.
+/// Tracks a vehicle along a path from period to period, so that a nearer point on another stretch
+/// of the path is never mistaken for its position; or over waypoints, which are passed in order.
+/// Without a path or waypoints there is no progress.
 class TargetProgress {
  public:
-  /// Refers to both.
+  /// Keeps references to both arguments.
   TargetProgress(const Scenario& scenario, const models::SystemDescription& system)
       : scenario_(scenario), system_(system) {}
 
   void reset() { now_.reset(); }
   /// The vehicle is now in `state` (state_dim).
   void advance(const Eigen::VectorXd& state);
-  /// The arc length that it is at, m, counted on over laps, or the number of waypoints that it has
-  /// passed; nothing without a path or waypoints.
+  /// The vehicle's arc length, m, accumulated over laps, or the number of waypoints passed; nothing
+  /// without a path or waypoints.
   [[nodiscard]] const std::optional<double>& now() const { return now_; }
 
  private:
@@ -42,20 +42,20 @@ class TargetProgress {
 /// The laps of a drive on a closed path.
 struct Laps {
   int wanted = 0;
-  std::vector<double> times{};  ///< of those that were finished, s
+  std::vector<double> times{};  ///< of the completed laps, s
 };
 
 /// Waypoints of a drive.
 struct WaypointTimes {
   int wanted = 0;
-  std::vector<double> times{};  ///< at which they were passed, in order; the last: reached, s
+  std::vector<double> times{};  ///< at which they were passed (the last: reached), in order, s
 };
 
-/// Nothing where the scenario has no waypoints.
+/// Nothing if the scenario has no waypoints.
 [[nodiscard]] std::optional<WaypointTimes> waypoint_times(const Trace& trace);
 
-/// Nothing where the scenario has no closed path. A lap ends where the line across the path at
-/// which the drive begins is crossed again; between control instants linearly.
+/// Nothing if the scenario has no closed path. A lap ends when the vehicle again crosses the line
+/// across the path at the drive's start; times are interpolated linearly between control instants.
 [[nodiscard]] std::optional<Laps> laps_of(const Trace& trace);
 
 }  // namespace qsmpc::harness

@@ -73,7 +73,7 @@ Eigen::MatrixXd true_states(const Trace& trace) {
 
 Eigen::Index completed_periods(const Trace& trace) {
   const auto steps = static_cast<Eigen::Index>(trace.steps.size());
-  // A controller fails before its period begins.
+  // A controller that fails does so before its period begins.
   const bool plant_broke = trace.outcome == Outcome::kFault && trace.fault_of == FaultOf::kPlant;
   const bool end_is_known = trace.final_state.size() > 0 && !plant_broke;
   return end_is_known || steps == 0 ? steps : steps - 1;

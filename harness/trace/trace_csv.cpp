@@ -49,7 +49,7 @@ class Table {
   bool begins_ = true;
 };
 
-/// Of the obstacles that move, among all of them.
+/// Indices of the moving obstacles among all of them.
 std::vector<std::size_t> moving_indices(const controller::SafeSet& safe_set) {
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < safe_set.obstacles.size(); ++i) {
@@ -97,7 +97,7 @@ std::string episode_csv(const EpisodeView& view) {
   Eigen::Index k = 0;
   for (const StepRecord& step : steps) episode_line(view, step, k++, table);
   if (k < view.states().cols()) {
-    // After the last period nothing but the state is known.
+    // After the last period only the state is known.
     const std::size_t states = view.system().states.size();
     table.number(view.duration());
     table.numbers(view.states().col(k), states);

@@ -1,5 +1,5 @@
-// An episode as comma-separated values, for spreadsheets and other people's viewers: all files on
-// one timeline, whose unit is the second.
+// An episode as comma-separated values, for spreadsheets and third-party viewers. All files share
+// one timeline, in seconds.
 #pragma once
 
 #include <string>
@@ -8,21 +8,21 @@
 
 namespace qsmpc::harness {
 
-/// A line a control instant: time, and true state, clearance, observation, input, disturbance,
-/// residual, belief, cost and what is certified of the next state, as far as there are any. Columns
-/// are "NAME [UNIT]"; fields of numbers that are not known are empty.
+/// One line per control instant: time, and, where available, true state, clearance, observation,
+/// input, disturbance, residual, belief, cost and the certificate of the next state. Columns are
+/// "NAME [UNIT]"; fields of unknown numbers are empty.
 [[nodiscard]] std::string episode_csv(const EpisodeView& view);
 
-/// A line a period and stage of its plan: the plan's nominal state and input, and the certificate.
-/// The head alone where nothing is planned.
+/// One line per period and stage of its plan: the plan's nominal state and input, and the
+/// certificate. Only the header if nothing is planned.
 [[nodiscard]] std::string plan_csv(const EpisodeView& view);
 
-/// A line a control instant and obstacle that moves: its index among the scenario's obstacles,
-/// where its middle is, its turn from how it is written, and where it was seen to be. The head
-/// alone where nothing moves.
+/// One line per control instant and moving obstacle: its index among the scenario's obstacles, the
+/// position of its centre, its rotation from its orientation in the scenario, and its measured
+/// position. Only the header if nothing moves.
 [[nodiscard]] std::string obstacles_csv(const EpisodeView& view);
 
-/// A line a period, stage and particle: weight and location. The head alone without particles.
+/// One line per period, stage and particle: weight and location. Only the header without particles.
 [[nodiscard]] std::string particles_csv(const EpisodeView& view);
 
 }  // namespace qsmpc::harness

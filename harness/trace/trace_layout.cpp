@@ -16,9 +16,9 @@ namespace {
 
 using Type = DatasetSpec::Type;
 
-/// Points stored together: small enough that the last, partly filled chunk, which is written anew
-/// with every step, wastes little. They are not compressed: that would save 15 % of their size, and
-/// take four times as long as all the rest of writing a step.
+/// Points stored together: few enough that the last, partly filled chunk, which is rewritten at
+/// every step, wastes little. They are not compressed: that would save 15 % of their size, but take
+/// four times as long as everything else in writing a step.
 constexpr std::size_t kPointChunk = 512;
 constexpr std::size_t kMotionChunk = 256;
 
@@ -31,7 +31,7 @@ struct TraceSizes {
   CoordinateLabels inputs;
   std::string clearance_unit;
   bool solid;             // whether contacts are recorded
-  std::size_t obstacles;  // that move
+  std::size_t obstacles;  // moving ones
 };
 
 TraceSizes trace_sizes(const Scenario& scenario, const models::SystemDescription& system) {
@@ -240,7 +240,7 @@ void add_particles(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
 void add_timing(std::vector<DatasetSpec>& layout) {
   for (const char* const phase :
        {"quantise", "propagate", "optimise", "certify", "total", "simulate"}) {
-    // Never compressed: other times must not move what comes after them in the file.
+    // Never compressed: different times must not shift what follows them in the file.
     layout.push_back({.path = std::string("/timing/") + phase,
                       .axes = {"step"},
                       .units = {"ms"},

@@ -27,7 +27,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Reads one file's groups into `trace`; a step is believed once it has a time.
+/// Reads one file's groups into a trace. A step counts only if it has a time.
 class TraceReader {
  public:
   explicit TraceReader(const std::string& path) : file_(Hdf5File::open(path)) {}
@@ -56,11 +56,11 @@ class TraceReader {
   void read_certificates();
   void read_timing();
 
-  /// The numbers of a dataset that older traces do not have; none where it is missing.
+  /// The numbers of a dataset that older traces lack; empty if it is missing.
   [[nodiscard]] std::vector<double> doubles_if_there(const std::string& path) const {
     return file_.has_dataset(path) ? file_.doubles(path) : std::vector<double>();
   }
-  /// The numbers of step `k` in a dataset with `row` numbers a step.
+  /// The numbers of step `k` in a dataset with `row` numbers per step.
   [[nodiscard]] static const double* row_of(const std::vector<double>& values, std::size_t k,
                                             Eigen::Index row) {
     return values.data() + k * static_cast<std::size_t>(row);
@@ -107,7 +107,7 @@ void TraceReader::read_header() {
   trace_.scenario_text = file_.text("/", "scenario");
   trace_.seed = file_.unsigned_integer("/", "seed");
   trace_.fault = file_.text("/", "fault");
-  // Earlier versions had controllers of their own only.
+  // Earlier versions had only built-in controllers.
   if (file_.has_attribute("/", kFaultOf) &&
       file_.text("/", kFaultOf) == fault_of_name(FaultOf::kController)) {
     trace_.fault_of = FaultOf::kController;
@@ -117,7 +117,7 @@ void TraceReader::read_header() {
   }
   const std::string outcome = file_.text("/", "outcome");
   try {
-    // Which part of the unsafe set it was is told by the states, which are read later.
+    // The part of the unsafe set follows from the states, which are read later.
     trace_.outcome = outcome == kLeftSafeSet ? Outcome::kCollision : outcome_from_name(outcome);
   } catch (const std::invalid_argument&) {
     refuse("/@outcome", outcome, outcome_list());
@@ -130,8 +130,8 @@ void TraceReader::read_header() {
   stages_ = static_cast<std::size_t>(certified_stages(parts_));
 }
 
-/// Earlier versions had one word for both parts of the unsafe set, and none for a drive that went
-/// on after it was unsafe: that one was "reached" or "timeout".
+/// Earlier versions had one outcome for both parts of the unsafe set, and none for a drive that
+/// continued after it was unsafe: its outcome was "reached" or "timeout".
 void TraceReader::read_outcome() {
   const bool is_left_safe_set = file_.text("/", "outcome") == kLeftSafeSet;
   const bool may_hide_it =
@@ -144,7 +144,7 @@ void TraceReader::read_outcome() {
   }
 }
 
-/// Of a trace from before it was recorded, from its scenario.
+/// Takes the system's description from the scenario if the trace predates its recording.
 void TraceReader::read_description() {
   const Scenario& scenario = trace_.scenario;
   trace_.system = has_system(file_) ? read_system(file_) : system_of(scenario);
@@ -186,7 +186,7 @@ void TraceReader::read_motion() {
   const std::size_t coordinates = file_.shape("/plant/motion/qpos")[1];
   std::size_t samples = times.size();
   if (coordinates > 0) samples = std::min(samples, positions.size() / coordinates);
-  // A run that was killed within a step may have left the one without the other.
+  // A run that was killed within a step may have left one without the other.
   if (samples < times.size() && trace_.outcome != Outcome::kInterrupted) {
     refuse("/plant/motion/qpos", std::to_string(samples) + " rows", std::to_string(times.size()));
   }
@@ -346,7 +346,7 @@ void TraceReader::read_budgets() {
   const std::size_t stages = stages_ + 1;
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
     for (std::size_t i = k * stages; i < (k + 1) * stages; ++i) {
-      // Without the dataset no model error was known to the program.
+      // The version that wrote a trace without this dataset had no model errors.
       controller::StageBudget budget{.model = model.empty() ? 0.0 : model[i],
                                      .dynamics = dynamics.empty() ? kNotANumber : dynamics[i],
                                      .lipschitz = lipschitz[i]};
@@ -378,7 +378,7 @@ void TraceReader::read_certificates() {
              [](controller::StageCertificate& stage, double value) { stage.value = value; });
   const std::vector<controller::CertificateEntry>& entries = controller::certificate_entries();
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    // What is missing keeps what stands for it: it was not among those that were computed.
+    // A missing bound keeps its default: it was not computed.
     const auto values = doubles_if_there(certificate_path(entries[i]));
     if (values.empty()) continue;
     for_stages(values, [i](controller::StageCertificate& stage, double value) {

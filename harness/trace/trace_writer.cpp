@@ -33,7 +33,7 @@ void write_trace_header(Hdf5File& file, const Trace& header) {
   if (!header.vehicle_digest.empty()) {
     file.set_text("/", "vehicle_digest", header.vehicle_digest);
   }
-  // What a reader shall see if nothing is ever added.
+  // What a reader sees if nothing is ever added.
   file.set_text("/", "outcome", outcome_name(Outcome::kInterrupted));
   file.set_text("/", "fault", "");
 }
@@ -69,8 +69,8 @@ void TraceWriter::append(const StepRecord& record, std::span<const MotionSample>
   if (parts_.particles) append_particles(record);
   append_certificates(file_, record.budgets, record.certificates);
   append_timing(record.timing);
-  // The time is the step's seal: it reaches the file only after everything else of the step, and
-  // the reader believes as many steps as there are times.
+  // The time marks the step as complete: it is written only after everything else of the step, and
+  // the reader accepts as many steps as there are times.
   file_.flush();
   file_.append("/plant/time", std::vector<double>{record.time});
   file_.flush();
@@ -207,8 +207,8 @@ void TraceWriter::finish(const Trace& trace) {
   file_.end_streaming();
   file_.set_text("/", "outcome", outcome_name(trace.outcome));
   file_.set_text("/", "fault", trace.fault);
-  // No attribute of the others: with more than eight HDF5 keeps them in a tree of their own, of
-  // which it leaks memory where the disk is full.
+  // Not set for other outcomes: with more than eight attributes HDF5 keeps them in a separate tree,
+  // whose memory it leaks if the disk is full.
   if (trace.outcome == Outcome::kFault) {
     file_.set_text("/", kFaultOf, fault_of_name(trace.fault_of));
   }

@@ -1,4 +1,4 @@
-// A trace in HDF5 that grows step by step while an episode runs.
+// A trace in HDF5, written step by step while an episode runs.
 //
 //   TraceWriter writer("out/episode.h5", header);
 //   for (…) writer.append(record, motion_of_the_period);
@@ -17,22 +17,23 @@
 
 namespace qsmpc::harness {
 
-/// Streams one episode to `PATH.partial`, which `finish` gives its name. Destroyed without
-/// `finish`, or killed, it leaves the partial file with every step that `append` returned from,
-/// which `read_trace` reads as an interrupted episode; whatever stood under PATH stays.
+/// Streams one episode to `PATH.partial`, which `finish` renames to PATH. If the writer is
+/// destroyed without `finish`, or the process is killed, the partial file remains with every step
+/// for which `append` returned; `read_trace` reads it as an interrupted episode. A file already at
+/// PATH stays.
 class TraceWriter {
  public:
-  /// `header`: scenario, scenario_text, system, seed and version are used, the rest is not.
-  /// Throws IoError when the file cannot be made.
+  /// `header`: only scenario, scenario_text, system, seed and version are used.
+  /// Throws IoError if the file cannot be created.
   explicit TraceWriter(std::string path, const Trace& header);
 
-  /// Adds one step and the motion samples since the last one; both are with the system afterwards.
-  /// Throws IoError when they cannot be written (nothing more can be then), std::invalid_argument
-  /// when the sizes in `record` do not fit the scenario.
+  /// Adds one step and the motion samples since the last one; on return the operating system has
+  /// both. Throws IoError if they cannot be written (nothing more can be written then), and
+  /// std::invalid_argument if the sizes in `record` do not fit the scenario.
   void append(const StepRecord& record, std::span<const MotionSample> motion);
 
   /// Adds outcome, fault and final_state of `trace`, makes the file durable and renames it to PATH.
-  /// final_state may be empty. To be called once, last. Throws IoError.
+  /// final_state may be empty. To be called once, as the last call. Throws IoError.
   void finish(const Trace& trace);
 
   [[nodiscard]] const std::string& partial_path() const { return file_.path(); }
@@ -50,14 +51,14 @@ class TraceWriter {
   Hdf5File file_;
   Eigen::Index state_dim_;
   Eigen::Index input_dim_;
-  bool is_solid_ = false;            ///< whether they have contacts
-  Eigen::Index obstacles_;           // that move
+  bool is_solid_ = false;            ///< whether the records have contacts
+  Eigen::Index obstacles_;           // moving ones
   controller::DecisionParts parts_;  ///< that the records have
   Eigen::Index stages_;              ///< with a certificate
   std::int64_t points_ = 0;          ///< particles written so far
   std::size_t qpos_size_ = 0;        ///< coordinates of a motion sample
   bool motion_begun_ = false;
-  bool broken_ = false;  ///< a step was written in part; what follows would not line up
+  bool broken_ = false;  ///< a step was partly written; later rows would be misaligned
 };
 
 }  // namespace qsmpc::harness

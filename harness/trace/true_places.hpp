@@ -1,4 +1,4 @@
-// The safe set of a drive with the obstacles that move where they truly were.
+// The safe set of a drive with its moving obstacles at their true poses.
 //
 //   const controller::UnsafeSet unsafe(driven_safe_set(trace));
 //   controller::clearance(states.col(k), unsafe, k);
@@ -15,13 +15,13 @@
 
 namespace qsmpc::harness {
 
-/// A forecast that knows where obstacles are: `poses` (offset x, y in m and turn in rad, 3 x count)
-/// of each stage, at least one.
+/// A forecast with known obstacle poses: `poses` of each stage (offset x, y in m and rotation in
+/// rad, 3 x count), at least one stage.
 [[nodiscard]] std::shared_ptr<controller::ObstacleForecast> known_places(
     const std::vector<Eigen::Matrix3Xd>& poses);
 
-/// Stages of its regions are the control instants of the trace. Obstacles are as DrivenObstacles
-/// has them.
+/// The stages of its regions are the control instants of the trace. Obstacles are posed as by
+/// DrivenObstacles.
 [[nodiscard]] controller::SafeSet driven_safe_set(const Trace& trace);
 
 }  // namespace qsmpc::harness

@@ -14,7 +14,7 @@ std::string vehicle_change(const Trace& trace) {
   try {
     if (mujoco_model_digest(path) == trace.vehicle_digest) return {};
   } catch (const InputError&) {
-    return {};  // whoever draws it says so
+    return {};  // the drawing code reports it
   }
   constexpr std::size_t kLongestPath = 200;
   return fmt::format("{} has changed since the drive: the vehicle is drawn as the file is now.",

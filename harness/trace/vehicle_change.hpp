@@ -1,4 +1,4 @@
-// Whether a vehicle is drawn as it was driven.
+// Whether the vehicle that is drawn is the one that was driven.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace qsmpc::harness {
 
-/// A sentence where the vehicle's MuJoCo file compiles to another model than the one that was
-/// driven: drawings show the former. Empty where it is the same, and where that is not known: of an
-/// analytic plant, of traces of earlier versions, and where the file is not to be had.
+/// A warning sentence if the vehicle's MuJoCo file, which drawings show, now compiles to a model
+/// other than the one that was driven. Empty if it is the same, or if that is unknown: for an
+/// analytic plant, for traces of earlier versions, and if the file is not available.
 [[nodiscard]] std::string vehicle_change(const Trace& trace);
 
 }  // namespace qsmpc::harness

@@ -13,12 +13,12 @@ namespace {
 constexpr double kHalf = 0.50;
 constexpr double kMost = 0.95;
 
-// Radius of the circle that holds `probability` of the standard Gaussian in the plane.
+// Radius of the circle that contains `probability` of the standard Gaussian in the plane.
 double planar_quantile(double probability) { return std::sqrt(-2.0 * std::log1p(-probability)); }
 
 render::PlanarPoint point_of(const Eigen::Vector2d& vector) { return {vector.x(), vector.y()}; }
 
-// The way's direction at stage `i`, from its neighbours; along x where it stands still.
+// Direction of the path at stage `i`, from its neighbours; along x if it does not move.
 Eigen::Vector2d direction_at(const std::vector<PlanarMoments>& stages, std::size_t i) {
   const std::size_t before = i > 0 ? i - 1 : 0;
   const std::size_t after = std::min(i + 1, stages.size() - 1);
@@ -26,8 +26,8 @@ Eigen::Vector2d direction_at(const std::vector<PlanarMoments>& stages, std::size
   return way.norm() > 0.0 ? Eigen::Vector2d(way.normalized()) : Eigen::Vector2d::UnitX();
 }
 
-// The point of the ellipse of 95 % whose tangent is along `normal` turned by a right angle: the
-// farthest that it reaches towards `normal`, which has the length 1.
+// The point of the 95 % ellipse that lies farthest in the direction `normal`, which has length 1;
+// its tangent there is perpendicular to `normal`.
 Eigen::Vector2d farthest(const PlanarMoments& stage, const Eigen::Vector2d& normal) {
   const Eigen::Vector2d pull = stage.covariance * normal;
   const double deviation = std::sqrt(std::max(normal.dot(pull), 0.0));
@@ -35,8 +35,8 @@ Eigen::Vector2d farthest(const PlanarMoments& stage, const Eigen::Vector2d& norm
   return stage.mean + planar_quantile(kMost) / deviation * pull;
 }
 
-// The tube where its direction is `along`, and, beyond, towards its round end: `turn` goes from 0
-// at the widest place to a right angle at the tip.
+// A section of the tube, whose direction is `along`, or of its round end: `turn` goes from 0 at the
+// widest section to a right angle at the tip.
 render::TubeSection section_of(const PlanarMoments& stage, const Eigen::Vector2d& along,
                                double turn, double bound) {
   const Eigen::Vector2d left(-along.y(), along.x());

@@ -18,27 +18,27 @@ struct PlanarMoments {
 /// The weighted moments of `stage`, which has points.
 [[nodiscard]] PlanarMoments planar_moments(const render::ParticleStage& stage);
 
-/// The ellipse about the mean that holds `probability` in (0, 1) of the Gaussian with these
+/// The ellipse around the mean that contains `probability` in (0, 1) of the Gaussian with these
 /// moments; its first axis is the longer one.
 [[nodiscard]] render::PlanarEllipse probability_ellipse(const PlanarMoments& moments,
                                                         double probability);
 
-/// The ellipse of what is `deviations` standard deviations from the mean; its first axis is the
+/// The ellipse of points `deviations` standard deviations from the mean; its first axis is the
 /// longer one.
 [[nodiscard]] render::PlanarEllipse deviation_ellipse(const PlanarMoments& moments,
                                                       double deviations);
 
-/// 50 % and 95 % of each stage.
+/// The 50 % and 95 % ellipses of each stage.
 [[nodiscard]] std::vector<render::BeliefEllipses> belief_ellipses(
     const std::vector<PlanarMoments>& stages);
 
-/// Sections of a tube's round end besides those of the stages, at either end.
+/// Sections of a tube's round end, at either end, in addition to those of the stages.
 inline constexpr int kTubeEndSections = 8;
 
-/// A tube through the stages, as wide across the way as the ellipses of 95 %, and at its ends as
-/// round as those of the first and the last: it covers both. With `bounds[k - 1]` at stage k (and
-/// at stage 0 the one of stage 1: there is none for the present). Stage k is section
-/// k + kTubeEndSections. Empty without a bound for each later stage.
+/// A tube through the stages: as wide across the path as the 95 % ellipses, with ends rounded like
+/// the first and the last ellipse, so that it covers both. Stage k has `bounds[k - 1]` (stage 0 has
+/// that of stage 1: there is none for the present) and is section k + kTubeEndSections. Empty
+/// unless there is a bound for each later stage.
 [[nodiscard]] std::vector<render::TubeSection> belief_tube(const std::vector<PlanarMoments>& stages,
                                                            const std::vector<double>& bounds);
 

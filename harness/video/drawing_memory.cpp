@@ -14,12 +14,12 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr double kMega = 1e6;
-// Measured with Mesa's OSMesa and x264. Every thread that draws has as many of Mesa's beside it as
-// there are cores, and a thread takes address space for its stack and its part of the heap.
-constexpr double kLibraries = 460e6;      // bytes, with buffers of a small picture
+// Measured with Mesa's OSMesa and x264. For every drawing thread, Mesa starts as many threads as
+// there are cores, and each thread takes address space for its stack and its part of the heap.
+constexpr double kLibraries = 460e6;      // bytes, including buffers of a small picture
 constexpr double kThreadOfACore = 75e6;   // bytes
 constexpr double kPixelOfAThread = 55.0;  // bytes
-constexpr int kMostCores = 8;             // more made little difference
+constexpr int kMostCores = 8;             // more make little difference
 
 }  // namespace
 
@@ -32,7 +32,7 @@ double drawing_memory(const EpisodeVideoOptions& options, int cores) {
 double free_address_space() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kInfinity;
-  double pages = 0.0;  // that are in use
+  double pages = 0.0;  // pages in use
   std::ifstream("/proc/self/statm") >> pages;
   const double used = pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
   return std::max(0.0, static_cast<double>(limit.rlim_cur) - used);

@@ -1,5 +1,5 @@
-// How much address space drawing takes, asked before the libraries that draw are started: they end
-// the process with a signal where they get none.
+// The address space that drawing takes, to be checked before the drawing libraries are started: if
+// they get none, they kill the process with a signal.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace qsmpc::harness {
 
-/// About how much address space (bytes) a video or picture takes with `options`, its libraries
-/// included, on a machine of `cores`. Somewhat more than was measured with OSMesa and x264.
+/// Approximate address space (bytes) for a video or picture with `options`, including libraries, on
+/// a machine with `cores` cores. Somewhat more than was measured with OSMesa and x264.
 [[nodiscard]] double drawing_memory(const EpisodeVideoOptions& options, int cores);
 
-/// The address space (bytes) that the process may still take: what its limit (ulimit -v) leaves,
-/// infinity without one.
+/// The address space (bytes) that the process may still take under its limit (ulimit -v); infinity
+/// without a limit.
 [[nodiscard]] double free_address_space();
 
-/// Why `free` bytes of address space are too few to draw with `options`, in words for an error;
-/// nothing where they are enough.
+/// Why `free` bytes of address space are too few to draw with `options`, as text for an error;
+/// nothing if they are enough.
 [[nodiscard]] std::optional<std::string> why_no_memory_to_draw(const EpisodeVideoOptions& options,
                                                                double free);
 

@@ -19,7 +19,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// What became of a drive that ended at `time` (s), and whether that is a failure.
+/// Adds the outcome of a drive that ended at `time` (s), and whether that is a failure.
 void add_banner(const EpisodeView& view, double time, render::Frame& frame) {
   const double unsafe = view.first_unsafe_time().value_or(time);
   switch (view.trace().outcome) {
@@ -96,7 +96,7 @@ double EpisodeFrames::longest_plan() const {
       const render::PlanarPose to = planar_pose(view_.system(), step.plan_states.col(i));
       length += std::hypot(to.x - from.x, to.y - from.y);
     }
-    // A rail's camera looks across: it needs more room for the same length.
+    // A rail's camera looks across it, so it needs more room for the same length.
     constexpr double kAcross = 1.35;
     const auto stages = static_cast<std::size_t>(step.plan_states.cols());
     if (on_rail_) length = std::max(length, -kAcross * lane(stages));
@@ -105,8 +105,8 @@ double EpisodeFrames::longest_plan() const {
   return longest;
 }
 
-// Of all points of the driven path but the last, whose time depends on the frame's; those of a rail
-// are clearances of the whole state.
+// Clearances at all points of the driven path except the last, whose time depends on the frame. On
+// a rail they are those of the whole state.
 std::vector<double> EpisodeFrames::path_clearances() const {
   if (steps_.empty()) return {};
   std::vector<render::PlanarPoint> path = track_.driven_path(kInfinity);
@@ -179,7 +179,7 @@ double EpisodeFrames::lane(std::size_t stage) const {
   return on_rail_ ? -kRailTime * view_.scenario().time_step * static_cast<double>(stage) : 0.0;
 }
 
-// As EpisodeTrack has the pose: the disturbance is drawn over the first kEaseTime of a period.
+// Eased as the pose in EpisodeTrack: the disturbance is drawn over the first kEaseTime of a period.
 Eigen::VectorXd EpisodeFrames::state_at(std::size_t step, double time) const {
   const Eigen::MatrixXd& states = view_.states();
   const auto k = static_cast<Eigen::Index>(step);
@@ -198,12 +198,12 @@ Eigen::VectorXd EpisodeFrames::state_at(std::size_t step, double time) const {
   return on_the_way + (1.0 - share / ease) * (before_kick(k) - from);
 }
 
-// When the vehicle was at point `i` of the `count` of its path until `now`.
+// The time when the vehicle was at point `i` of the `count` points of its path until `now`.
 double EpisodeFrames::driven_time(std::size_t i, std::size_t count, double now) const {
   return i + 1 < count ? std::min(track_.path_time(i), track_.duration()) : now;
 }
 
-// Of the whole state: on a rail, states that are not drawn may be what is unsafe.
+// The clearance of the whole state: on a rail, states that are not drawn may be the unsafe ones.
 double EpisodeFrames::clearance_at(double time) const {
   const Eigen::VectorXd& clearances = view_.clearances();
   const double last = static_cast<double>(clearances.size() - 1);
@@ -214,13 +214,13 @@ double EpisodeFrames::clearance_at(double time) const {
   return (1.0 - share) * clearances[k] + share * clearances[k + 1];
 }
 
-// The vehicle's joints, and what was and will be at its time.
+// Sets the vehicle's joints, and places past and future at their times.
 void EpisodeFrames::put_on_rail(std::size_t step, double time, render::Frame& frame) const {
   const std::size_t count = frame.driven_path.size();
   for (std::size_t i = 0; i < count; ++i) {
     frame.driven_path[i].y = kRailTime * (time - driven_time(i, count, time));
   }
-  // Past and plan move on with time, not in steps of a period.
+  // Past and plan move continuously with time, not in steps of a period.
   const double since = kRailTime * (time - steps_[step].time);
   for (render::PlanarPoint& point : frame.planned_path) point.y += since;
   for (render::ParticleStage& stage : frame.particles) {
@@ -283,8 +283,8 @@ void EpisodeFrames::add_belief(const StepRecord& step, render::Frame& frame) con
   if (raw_ && !step.particles.empty()) add_raw_points(step, frame);
 }
 
-// As many as the particles leave room for, but at least a quarter of all: they would be none where
-// the particles fill the room.
+// Adds as many raw points as the particles leave room for, but at least a quarter of the limit, so
+// that some are drawn even if the particles use up the limit.
 void EpisodeFrames::add_raw_points(const StepRecord& step, render::Frame& frame) const {
   std::size_t drawn = 0;
   for (const render::ParticleStage& stage : frame.particles) drawn += stage.points.size();
@@ -300,7 +300,7 @@ void EpisodeFrames::add_raw_points(const StepRecord& step, render::Frame& frame)
   frame.hud.push_back({"raw points drawn", every > 1 ? every_nth(every) : "all"});
 }
 
-// From the plan of the period before; in the first period, or without one, from its own.
+// From the previous period's plan; in the first period, or without such a plan, from its own.
 std::optional<render::PlanarPose> EpisodeFrames::ghost(std::size_t step, double time) const {
   const bool known_before = step > 0 && steps_[step - 1].plan_states.cols() > 2;
   const Eigen::MatrixXd& states = steps_[known_before ? step - 1 : step].plan_states;

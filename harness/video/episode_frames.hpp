@@ -1,4 +1,4 @@
-// What an episode's pictures show, from the view of its trace alone.
+// The contents of an episode's pictures, from the view of its trace alone.
 #pragma once
 
 #include <cstddef>
@@ -18,15 +18,15 @@
 
 namespace qsmpc::harness {
 
-/// Frames of one episode. A system without a place in the plane stands on a rail along x, and y is
-/// time: what is to come lies before it, towards -y, and what has been behind it, 1 m a second.
-/// Const functions may be called from several threads at once.
+/// Frames of one episode. A system without a position in the plane stands on a rail along x, and y
+/// is time, 1 m per second: the future lies in front of it, towards -y, and the past behind it.
+/// Const functions may be called from several threads concurrently.
 class EpisodeFrames {
  public:
   /// `view` must outlive it.
   explicit EpisodeFrames(const EpisodeView& view, const Overlays& overlays = {});
 
-  /// s, from the start to the end of the last control period.
+  /// Time from the start to the end of the last control period, s.
   [[nodiscard]] double duration() const { return track_.duration(); }
 
   /// The vehicle's XML.
@@ -41,20 +41,20 @@ class EpisodeFrames {
   /// See episode_world.
   [[nodiscard]] render::World world() const { return episode_world(view_); }
 
-  /// The smallest rectangle about the world and the whole way driven; obstacles that move may be
-  /// beyond it.
+  /// The smallest rectangle around the world and the whole driven path; moving obstacles may leave
+  /// it.
   [[nodiscard]] render::PlanarRectangle region() const;
 
-  /// m, the longest plan of the episode: how far a camera must see.
+  /// Length of the longest plan of the episode, m: how far a camera must see.
   [[nodiscard]] double longest_plan() const;
 
-  /// The ranges of the strip charts: at first those of this episode.
+  /// The ranges of the strip charts; initially those of this episode.
   [[nodiscard]] const ChartRanges& ranges() const { return ranges_; }
   void set_ranges(const ChartRanges& ranges) { ranges_ = ranges; }
 
-  /// The frame at `time` (s); from `duration()` on with a banner that tells the outcome. Plan,
-  /// particles, certificate and forecasts are those of the control period that `time` is in. More
-  /// than kMostOverlayPoints points are thinned, and a row says so.
+  /// The frame at `time` (s); from `duration()` on with a banner that shows the outcome. Plan,
+  /// particles, certificate and forecasts are those of the control period that contains `time`.
+  /// More than kMostOverlayPoints points are thinned, and a row says so.
   [[nodiscard]] render::Frame at(double time) const;
 
  private:
@@ -62,13 +62,13 @@ class EpisodeFrames {
   void add_plan(const StepRecord& step, render::Frame& frame) const;
   void add_belief(const StepRecord& step, render::Frame& frame) const;
   void add_raw_points(const StepRecord& step, render::Frame& frame) const;
-  /// The body's outline where the vehicle stands at `pose`.
+  /// The body's outline for the vehicle at `pose`.
   [[nodiscard]] std::vector<std::vector<render::PlanarPoint>> body_at(
       const render::PlanarPose& pose) const;
   [[nodiscard]] std::optional<render::PlanarPose> ghost(std::size_t step, double time) const;
   [[nodiscard]] render::ParticleStage planar(const controller::DiscreteMeasure& measure,
                                              std::size_t stage) const;
-  /// m, y of a stage of the plan on a rail, of which it is 0.
+  /// On a rail: y of stage `stage` of the plan, m.
   [[nodiscard]] double lane(std::size_t stage) const;
   [[nodiscard]] Eigen::VectorXd state_at(std::size_t step, double time) const;
   [[nodiscard]] double driven_time(std::size_t i, std::size_t count, double now) const;
@@ -86,7 +86,7 @@ class EpisodeFrames {
   MovingBodies others_;
   PlanarClearances planar_clearances_;
   std::vector<double> path_clearances_;  // see path_clearances()
-  std::optional<RawPoints> raw_;         // where they are drawn
+  std::optional<RawPoints> raw_;         // if they are drawn
   ChartRanges ranges_;
   std::vector<double> waypoints_passed_;  // at each control instant; empty without waypoints
 };

@@ -18,14 +18,15 @@ namespace {
 
 constexpr double kLongestHistory = 20.0;  // s
 constexpr double kShortestHistory = 2.0;  // s
-constexpr double kRoom = 1.15;            // of a chart's range, so that nothing runs along its edge
+constexpr double kRoom = 1.15;            // factor on a chart's range, so that nothing runs along
+                                          // its edge
 
 double next_certificate(const StepRecord& step) {
   return step.certificates.empty() ? std::numeric_limits<double>::quiet_NaN()
                                    : step.certificates.front().value;
 }
 
-// "0.00" also for what rounds to it from below.
+// "0.00" without a sign, also for negative values that round to it.
 std::string signed_text(double value) {
   std::string size = fmt::format("{:.2f}", std::abs(value));
   if (size == "0.00") return size;
@@ -69,7 +70,7 @@ render::StripChart certificate_chart(const History& history, const ChartRanges& 
   chart.lower_label = percent_text(chart.lower);
   chart.upper_label = percent_text(chart.upper);
   chart.logarithmic = true;
-  // A limit of 0 has no place on a logarithmic axis.
+  // A limit of 0 cannot be shown on a logarithmic axis.
   if (limit > 0.0 && std::isfinite(limit)) {
     chart.limit = {.value = limit, .label = "limit " + percent_text(limit)};
   }
@@ -114,7 +115,7 @@ render::StripChart solve_time_chart(const History& history, const Scenario& scen
   return chart;
 }
 
-/// Always there where there are limits: rows that come and go would move the charts.
+/// Present in all frames if there are limits: rows that come and go would shift the charts.
 void add_risk_rows(const Trace& trace, std::size_t step, std::vector<render::HudRow>& rows) {
   const Scenario::Risk& limits = trace.scenario.risk;
   if (!limits.any()) return;
@@ -143,7 +144,8 @@ std::string bound_text(double bound) {
   if (std::isnan(bound)) return "–";
   if (bound >= 1.0) return "≤ 100 %";
   if (bound <= kLeastShown) return "≤ " + percent_text(kLeastShown);
-  // Two digits, rounded up: an upper bound stays one. What is a rounding error above is not.
+  // Two digits, rounded up, so that an upper bound remains one. A mere rounding error above a
+  // two-digit value is ignored.
   constexpr double kRounding = 1e-9;
   const double unit = std::pow(10.0, std::floor(std::log10(bound)) - 1.0);
   return "≤ " + percent_text(std::min(std::ceil(bound / unit * (1.0 - kRounding)) * unit, 1.0));

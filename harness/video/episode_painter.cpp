@@ -6,7 +6,8 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kPlansInView = 1.9;  // chase camera's distance in lengths of the longest plan
+constexpr double kPlansInView = 1.9;  // distance of the chase camera, in lengths of the longest
+                                      // plan
 
 const EpisodeView& drawable(const EpisodeView& view) {
   const std::string reason = why_not_drawn(view);

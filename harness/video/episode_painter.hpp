@@ -17,7 +17,7 @@
 
 namespace qsmpc::harness {
 
-/// How pictures of episodes look.
+/// The layout of an episode's pictures.
 struct VideoLayout {
   int width = 1280;              ///< pixels
   int height = 720;              ///< pixels
@@ -25,19 +25,19 @@ struct VideoLayout {
   Overlays overlays{};
 };
 
-/// What is known of the pictures before any is drawn; const functions may be called from several
-/// threads at once.
+/// What is known about the pictures before any is drawn. Const functions may be called from several
+/// threads concurrently.
 class EpisodePictures {
  public:
   /// `view` (and `beside`, shown on its right, if not null) must outlive it. Throws
-  /// std::runtime_error when an episode cannot be drawn, see `why_not_drawn`.
+  /// std::runtime_error if an episode cannot be drawn, see `why_not_drawn`.
   EpisodePictures(const EpisodeView& view, const VideoLayout& layout,
                   const EpisodeView* beside = nullptr);
 
-  /// s, of the longer episode.
+  /// Duration of the longer episode, s.
   [[nodiscard]] double duration() const;
 
-  /// One frame an episode. The shorter one stands on its last frame, with its banner.
+  /// One frame per episode. The shorter one stays on its last frame, with its banner.
   [[nodiscard]] std::vector<render::Frame> at(double time) const;
 
   [[nodiscard]] render::PictureOptions options() const;
@@ -49,7 +49,7 @@ class EpisodePictures {
   std::optional<EpisodeFrames> beside_;
 };
 
-/// Draws on the thread that made it; see Renderer.
+/// Draws on the thread that created it; see Renderer.
 class EpisodePainter {
  public:
   /// `pictures` must outlive it. Throws as Renderer.

@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kCameraWindow = 0.35;  // s, standard deviation of the camera's smoothing
+constexpr double kCameraWindow = 0.35;  // standard deviation of the camera's smoothing, s
 
 // `angle` plus the multiple of a turn that brings it nearest to `reference`.
 double unwrapped(double angle, double reference) {
@@ -19,7 +19,7 @@ double unwrapped(double angle, double reference) {
   return angle - kTurn * std::round((angle - reference) / kTurn);
 }
 
-// Index of the last of `items`, sorted by time, that is not later than `time`; 0 if all are.
+// Index of the last of `items`, sorted by time, that is not later than `time`; 0 if all are later.
 template <typename T>
 std::size_t last_not_later(const std::vector<T>& items, double time) {
   const auto later = std::upper_bound(items.begin(), items.end(), time,
@@ -33,8 +33,9 @@ double share_after(const std::vector<T>& items, std::size_t index, double time) 
   return span > 0.0 ? std::clamp((time - items[index].time) / span, 0.0, 1.0) : 1.0;
 }
 
-// Linear in every value; MuJoCo normalises quaternions before it uses them, which makes theirs an
-// nlerp. Neighbouring samples differ by a small turn, so that neither sign nor speed matters.
+// Linear in every value. MuJoCo normalises quaternions before use, so they are interpolated by
+// nlerp. Neighbouring samples differ by a small rotation, so that neither the quaternions' sign nor
+// the varying speed of nlerp matters.
 std::vector<double> between(const std::vector<double>& a, const std::vector<double>& b,
                             double share) {
   std::vector<double> values(a.size());
@@ -78,11 +79,11 @@ void EpisodeTrack::add_poses(const EpisodeView& view) {
   for (std::size_t k = 0; k < trace.steps.size(); ++k) {
     add_instant(trace.steps[k].time, planar_pose(system, states.col(static_cast<Eigen::Index>(k))));
   }
-  // A killed episode has no last state: its vehicle stands still for the last period.
+  // A killed episode has no final state: its vehicle stands still for the last period.
   const bool end_is_known = states.cols() > std::ssize(trace.steps);
   add_instant(duration_, planar_pose(system, states.rightCols<1>()));
 
-  // Within a period: from the state at its beginning to the one at its end before the disturbance.
+  // Within a period: from the state at its beginning to that at its end, before the disturbance.
   const double ease_share = std::min(kEaseTime / trace.scenario.time_step, 0.5);
   drawn_.push_back(instants_.front());
   for (std::size_t k = 0; k < trace.steps.size(); ++k) {
@@ -104,7 +105,7 @@ void EpisodeTrack::add_poses(const EpisodeView& view) {
 }
 
 void EpisodeTrack::add_motion(const Trace& trace) {
-  double instant = -std::numeric_limits<double>::infinity();  // of the last jump
+  double instant = -std::numeric_limits<double>::infinity();  // time of the last jump
   for (const MotionSample& sample : trace.motion) {
     if (sample.qpos.empty()) {
       motion_.clear();
@@ -154,7 +155,7 @@ std::vector<render::PlanarPoint> EpisodeTrack::driven_path(double time) const {
   return path;
 }
 
-// A line fitted to the poses near `time`: unlike a mean it does not lag at the ends.
+// A line is fitted to the poses near `time`: unlike a mean, it does not lag at the ends.
 render::PlanarPose EpisodeTrack::smooth_pose(double time) const {
   const double now = std::clamp(time, 0.0, duration_);
   double weights = 0.0;

@@ -1,9 +1,9 @@
-// Where the vehicle is drawn at any time of an episode, from what the trace holds.
+// The vehicle's drawn pose at any time of an episode, from the data in the trace.
 //
-// At each control instant the disturbance makes the true state jump. A picture that jumps with it
-// is jerky, so the jump is drawn over the first kEaseTime of the following period: pictures within
-// it show the vehicle between the place where it was and the place to which it was moved.
-// Everywhere else they show the recorded motion. The trace itself is not touched.
+// At each control instant the disturbance makes the true state jump, which would make a video
+// jerky. The jump is therefore drawn over the first kEaseTime of the following period: pictures
+// within it show the vehicle between the place where it was and the place to which it was moved.
+// All other pictures show the recorded motion. The trace itself is not changed.
 #pragma once
 
 #include <vector>
@@ -15,14 +15,14 @@
 
 namespace qsmpc::harness {
 
-/// The coordinates of `state` that are drawn; 0 where a system has none.
+/// The drawn coordinates of `state`; 0 for those that the system lacks.
 [[nodiscard]] render::PlanarPose planar_pose(const models::SystemDescription& system,
                                              const Eigen::Ref<const Eigen::VectorXd>& state);
 
-/// Times that differ by less are the same.
+/// Times that differ by less count as equal.
 inline constexpr double kTimeTolerance = 1e-9;  // s
 
-/// The pose at `share` of the way from `a` to `b`, linear in each coordinate.
+/// The pose at the fraction `share` between `a` and `b`, linear in each coordinate.
 [[nodiscard]] render::PlanarPose between(const render::PlanarPose& a, const render::PlanarPose& b,
                                          double share);
 
@@ -30,32 +30,32 @@ class EpisodeTrack {
  public:
   static constexpr double kEaseTime = 0.04;  ///< s
 
-  /// Takes what it needs from `view`.
+  /// Copies what it needs from `view`.
   explicit EpisodeTrack(const EpisodeView& view);
 
-  /// s, the end of the last control period; 0 without steps.
+  /// End of the last control period, s; 0 without steps.
   [[nodiscard]] double duration() const { return duration_; }
 
   /// The vehicle's pose; `time` is clamped to the episode, here and below.
   [[nodiscard]] render::PlanarPose pose(double time) const;
 
-  /// Values of all joints of the MuJoCo model; empty where the trace has none.
+  /// Values of all joints of the MuJoCo model; empty if the trace has none.
   [[nodiscard]] std::vector<double> qpos(double time) const;
 
-  /// The way from the start to `pose(time)`.
+  /// The path from the start to `pose(time)`.
   [[nodiscard]] std::vector<render::PlanarPoint> driven_path(double time) const;
 
-  /// s, when the vehicle was at point `index` of the way, which is not its last one.
+  /// Time when the vehicle was at point `index` of the path, which must not be the last, s.
   [[nodiscard]] double path_time(std::size_t index) const { return drawn_[index].time; }
 
-  /// A pose near the vehicle's that moves smoothly: what a camera follows.
+  /// A pose near the vehicle's that moves smoothly, for a camera to follow.
   [[nodiscard]] render::PlanarPose smooth_pose(double time) const;
 
-  /// m/s, how far the plant came by itself in the control period about `time`, before the
-  /// disturbance, over the period; 0 without steps.
+  /// Distance that the plant itself moved in the control period around `time`, before the
+  /// disturbance, divided by the period, m/s; 0 without steps.
   [[nodiscard]] double driven_speed(double time) const;
 
-  /// The smallest rectangle about the way; of no area without steps.
+  /// The smallest rectangle around the path; empty without steps.
   [[nodiscard]] render::PlanarRectangle extent() const;
 
  private:

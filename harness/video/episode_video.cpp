@@ -21,10 +21,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kHoldTime = 1.0;         // s, how long the outcome is shown
-constexpr double kSlowest = 0.1;          // s of the episode in a second
+constexpr double kHoldTime = 1.0;         // how long the outcome is shown, s
+constexpr double kSlowest = 0.1;          // seconds of the episode per second of video
 constexpr double kFastest = 100.0;        // the same
-constexpr double kFrameTolerance = 1e-6;  // of a frame: less of the episode needs none of its own
+constexpr double kFrameTolerance = 1e-6;  // of a frame: a shorter rest of the episode gets no extra
+                                          // frame
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -37,7 +38,7 @@ VideoLayout layout_of(const EpisodeVideoOptions& options) {
           .overlays = options.overlays};
 }
 
-// Which moment of the episode each frame of the video shows.
+// The moment of the episode that each frame of the video shows.
 class Timetable {
  public:
   Timetable(const EpisodeVideoOptions& options, double duration)
@@ -63,11 +64,11 @@ class Timetable {
  private:
   double from_;
   double to_;
-  double step_;  // s of the episode from frame to frame
+  double step_;  // time of the episode from frame to frame, s
   int total_ = 0;
 };
 
-// What each drawing thread draws with; OpenGL contexts belong to a thread, so each has its own.
+// One drawer per drawing thread: OpenGL contexts are bound to a thread.
 OrderedDrawing::Drawer make_drawer(const EpisodePictures& pictures, const Timetable& timetable) {
   const auto painter = std::make_shared<EpisodePainter>(pictures);
   return [painter, timetable](int index, render::Image& out) {

@@ -18,9 +18,9 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kFlatHalfWidth = 0.5;  // m, of an obstacle in a direction that a system lacks
+constexpr double kFlatHalfWidth = 0.5;  // of an obstacle, in a direction that the system lacks, m
 
-// The region's sides along x and y; `missing` stands for half of one that the system lacks.
+// The region's sides along x and y; `missing` is half the length of a side that the system lacks.
 render::PlanarRectangle planar_sides(const models::SystemDescription& system,
                                      const controller::UnsafeRegion& region, double missing) {
   const std::array<int, 2> index = {drawn_x(system), system.position_y};
@@ -57,7 +57,7 @@ render::RoadLine road_line(const Eigen::Matrix2Xd& points, bool closed, bool is_
   return line;
 }
 
-// The middle of a path that is followed, and the edges of its road.
+// Adds the centre line of the path to follow, and the edges of its road.
 void add_road_lines(const Scenario& scenario, render::World& world) {
   if (!scenario.target.course) return;
   world.road.push_back(road_line(centre_line(*scenario.target.course->path), false, false));
@@ -77,8 +77,8 @@ controller::SafeSet in_plane(controller::Box bounds) {
   return {.bounds = std::move(bounds), .obstacles = {}, .body = {.discs = {}, .x = 0, .y = 1}};
 }
 
-// What stands still in the plane of position: bounds and boxes as they are drawn, shapes and the
-// road as they are.
+// The static safe set in the plane of position: bounds and boxes as drawn, shapes and the road as
+// in the scenario.
 controller::SafeSet standing_in_plane(const render::World& world,
                                       const controller::SafeSet& scenario) {
   controller::SafeSet safe_set = in_plane(box_of(world.bounds));

@@ -1,5 +1,5 @@
-// What of an episode's scenario stands in its pictures, and how far the plane's points are from
-// what is unsafe there.
+// The static parts of an episode's scenario in its pictures, and the clearances of points in the
+// plane.
 #pragma once
 
 #include <vector>
@@ -11,28 +11,28 @@
 
 namespace qsmpc::harness {
 
-/// Bounds, road, obstacles that do not move and target of the scenario, as far as they lie in the
-/// plane of position.
+/// Bounds, road, static obstacles and target of the scenario, as far as they lie in the plane of
+/// position.
 [[nodiscard]] render::World episode_world(const EpisodeView& view);
 
-/// A shape of the plane as it is drawn.
+/// The drawn form of a shape in the plane.
 [[nodiscard]] render::Prism prism_of(const controller::PlanarShape& shape);
 
-/// How far points of the plane are from what is unsafe, at times of the drive.
+/// Distances of points in the plane to the unsafe set, at times of the drive.
 class PlanarClearances {
  public:
-  /// `world` is episode_world(view), and `others` are the obstacles of its trace that move.
+  /// `world` is episode_world(view), and `others` are the moving obstacles of its trace.
   PlanarClearances(const EpisodeView& view, const render::World& world,
                    const DrivenObstacles& others);
 
-  /// m, of each of `points` at its time (s, as many as points), as clearance() has it of a vehicle
-  /// that is a point.
+  /// Clearance of each of `points` at its time (s, as many as points), m, as clearance() gives for
+  /// a point vehicle.
   [[nodiscard]] std::vector<double> of(const std::vector<render::PlanarPoint>& points,
                                        const std::vector<double>& times) const;
 
  private:
   controller::UnsafeSet standing_;
-  controller::SafeSet moving_;  // nothing but what moves
+  controller::SafeSet moving_;  // only the moving obstacles
   DrivenObstacles others_;
 };
 

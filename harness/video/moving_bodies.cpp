@@ -12,8 +12,8 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr int kMostStages = 5;         // of which an ellipse is drawn
-constexpr double kLeastWeight = 0.01;  // of a way that is drawn
+constexpr int kMostStages = 5;         // most stages drawn as an ellipse
+constexpr double kLeastWeight = 0.01;  // least weight of a drawn way
 
 render::PlanarPoint moved(const render::PlanarPoint& point, const Eigen::Vector2d& centre,
                           const Eigen::Rotation2Dd& turn, const Eigen::Vector2d& offset) {
@@ -21,7 +21,7 @@ render::PlanarPoint moved(const render::PlanarPoint& point, const Eigen::Vector2
   return {at.x(), at.y()};
 }
 
-// One way of an obstacle whose middle is written at `centre`.
+// One way of an obstacle whose centre is at `centre` in the scenario.
 render::ForecastWay way_of(const controller::PlacesByStage& stages, std::size_t way,
                            const Eigen::Vector2d& centre) {
   render::ForecastWay drawn{.weight = stages.front()[way].weight, .way = {}, .ellipses = {}};

@@ -1,5 +1,5 @@
-// The obstacles that move, as pictures of an episode show them: where they truly are, and where the
-// planner took them to be going.
+// The moving obstacles in pictures of an episode: their true poses, and the planner's forecasts of
+// them.
 #pragma once
 
 #include <cstddef>
@@ -11,35 +11,35 @@
 
 namespace qsmpc::harness {
 
-/// Standard deviations that an ellipse about an obstacle's middle reaches.
+/// Size of an ellipse around an obstacle's centre, in standard deviations.
 inline constexpr double kForecastDeviations = 2.0;
 
-/// Const functions may be called from several threads at once.
+/// Const functions may be called from several threads concurrently.
 class MovingBodies {
  public:
-  /// Takes what it needs from `view`.
+  /// Copies what it needs from `view`.
   explicit MovingBodies(const EpisodeView& view);
 
   [[nodiscard]] const DrivenObstacles& driven() const { return driven_; }
 
-  /// At `time` (s).
+  /// The drawn obstacles at `time` (s).
   [[nodiscard]] std::vector<render::Prism> at(double time) const;
 
-  /// As the plan of period `step` has it: each way that an obstacle may intend, unless it is hardly
-  /// possible. None where nothing was planned.
+  /// The forecasts used by the plan of period `step`: each way that an obstacle may intend to take,
+  /// unless it is very unlikely. Empty if nothing was planned.
   [[nodiscard]] const std::vector<render::ForecastWay>& forecasts(std::size_t step) const {
     return forecasts_[step];
   }
 
  private:
   struct Body {
-    render::Prism prism;  // as it is written
+    render::Prism prism;  // as placed by the scenario
     Eigen::Vector2d centre;
   };
 
   DrivenObstacles driven_;
   std::vector<Body> bodies_;
-  std::vector<std::vector<render::ForecastWay>> forecasts_;  // of each period
+  std::vector<std::vector<render::ForecastWay>> forecasts_;  // one entry per period
 };
 
 }  // namespace qsmpc::harness

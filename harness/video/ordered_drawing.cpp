@@ -9,7 +9,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// A picture may be slow to draw: the other threads go on for as long as this many are ahead of it.
+// Lets the other threads continue past a slow picture until this many per thread are ahead of it.
 constexpr std::size_t kSlotsPerThread = 2;
 
 std::size_t slot_count(const OrderedDrawing::Work& work) {
@@ -61,8 +61,8 @@ double OrderedDrawing::drawing_seconds() const {
   return drawing_seconds_;
 }
 
-// The next picture that nobody has begun, once its slot is free, which it is when the picture
-// before in it was taken; -1 when there is nothing more to do.
+// The next picture not yet begun, once its slot is free, i.e. once the slot's previous picture was
+// taken; -1 if nothing is left to do.
 int OrderedDrawing::next_to_draw() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] {
@@ -75,7 +75,7 @@ void OrderedDrawing::draw_all(const DrawerFactory& make_drawer) {
   try {
     const Drawer draw = make_drawer();
     for (int index = next_to_draw(); index >= 0; index = next_to_draw()) {
-      Slot& slot = slot_of(index);  // nobody else touches its image until it is drawn
+      Slot& slot = slot_of(index);  // no other thread accesses its image until it is drawn
       const auto begin = std::chrono::steady_clock::now();
       draw(index, slot.image);
       const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;

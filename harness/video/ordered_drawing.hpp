@@ -1,4 +1,4 @@
-// Pictures drawn by several threads and taken by one, in order and with bounded memory.
+// Pictures drawn by several threads and consumed by one, in order and with bounded memory.
 //
 //   OrderedDrawing drawing({.total = 300, .threads = 2}, [&] {
 //     auto renderer = std::make_shared<Renderer>(…);  // on the drawing thread, whose own it stays
@@ -20,17 +20,17 @@ namespace qsmpc::harness {
 
 class OrderedDrawing {
  public:
-  /// Draws picture `index` into `out`, whose memory is that of an earlier picture.
+  /// Draws picture `index` into `out`, which reuses the memory of an earlier picture.
   using Drawer = std::function<void(int index, render::Image& out)>;
-  /// Called once on each drawing thread; what it returns is called and destroyed there too.
+  /// Called once on each drawing thread; its result is also called and destroyed there.
   using DrawerFactory = std::function<Drawer()>;
 
   struct Work {
     int total = 0;    ///< pictures, 0 … total - 1
-    int threads = 1;  ///< that draw; no more than `total` are started
+    int threads = 1;  ///< drawing threads; no more than `total` are started
   };
 
-  /// Begins to draw. Throws std::invalid_argument when no thread may draw.
+  /// Starts drawing. Throws std::invalid_argument if `work.threads` is below 1.
   OrderedDrawing(const Work& work, const DrawerFactory& make_drawer);
 
   /// Stops after the pictures that are being drawn.
@@ -38,14 +38,15 @@ class OrderedDrawing {
   OrderedDrawing(const OrderedDrawing&) = delete;
   OrderedDrawing& operator=(const OrderedDrawing&) = delete;
 
-  /// Waits for the next picture, the first at the first call, and swaps it into `image`. Throws
-  /// what a drawing thread threw, std::out_of_range when all pictures are taken.
+  /// Waits for the next picture, starting with the first, and swaps it into `image`. Rethrows the
+  /// exception of a drawing thread; throws std::out_of_range when all pictures are taken.
   void take(render::Image& image);
 
-  /// Pictures that may be held at once, drawn or being drawn; besides the one that was taken.
+  /// Number of pictures that may be held at once, drawn or being drawn, besides the one that was
+  /// taken.
   [[nodiscard]] int slots() const { return static_cast<int>(slots_.size()); }
 
-  /// s of wall-clock time spent in drawers so far, summed over the threads.
+  /// Wall-clock time spent in drawers so far, summed over the threads, s.
   [[nodiscard]] double drawing_seconds() const;
 
  private:
@@ -62,7 +63,7 @@ class OrderedDrawing {
   std::vector<Slot> slots_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  int begun_ = 0;  // pictures that a thread has drawn or draws
+  int begun_ = 0;  // number of pictures begun
   int taken_ = 0;
   double drawing_seconds_ = 0.0;
   bool stop_ = false;

@@ -37,7 +37,7 @@ controller::Policy RawPoints::policy_of(const StepRecord& step) const {
                             .gains = step.plan_gains,
                             .bounds = settings_.bounds};
   if (!policy.gains.empty()) return policy;
-  // An older trace, whose gains are those that belong to the inputs.
+  // An older trace without gains: they are those that belong to the inputs.
   const Eigen::MatrixXd no_change = Eigen::MatrixXd::Zero(model_->input_dim(), model_->state_dim());
   controller::PolicyMaker(*model_, settings_)
       .make(step.plan_states.col(0), step.plan_inputs, no_change, policy);

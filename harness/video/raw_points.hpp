@@ -1,6 +1,6 @@
-// The points that a prediction compresses, stage by stage, made again for the one overlay that
-// shows them: a trace holds only what they were compressed to, for they are as many times more as
-// the noise has points. This alone of what draws an episode builds the planner's model.
+// The points that a prediction compresses, stage by stage, recomputed for the one overlay that
+// shows them. A trace holds only the compressed points; the raw ones are more by a factor of the
+// number of noise points. This is the only drawing code that builds the planner's model.
 #pragma once
 
 #include <memory>
@@ -16,16 +16,16 @@ namespace qsmpc::harness {
 
 class RawPoints {
  public:
-  /// Throws std::invalid_argument when the system of `scenario` is unknown.
+  /// Throws std::invalid_argument if the system of `scenario` is unknown.
   explicit RawPoints(const Scenario& scenario);
 
-  /// How many there are in all stages of `step`.
+  /// The number of points in all stages of `step`.
   [[nodiscard]] std::size_t count(const StepRecord& step) const;
 
   /// Element k - 1: the stepped points f(c_i, u_i) of stage k - 1 under the plan's policy, each
-  /// with each point of the noise's product quantiser (or with none where the controller does not
-  /// propagate the noise), and the products of their weights. Empty for a step without particles.
-  /// Const, and safe from several threads.
+  /// combined with every point of the noise's product quantiser (or with none if the controller
+  /// does not propagate the noise), and the products of their weights. Empty for a step without
+  /// particles. May be called from several threads concurrently.
   [[nodiscard]] std::vector<controller::DiscreteMeasure> stages(const StepRecord& step) const;
 
  private:

@@ -13,7 +13,7 @@
 
 namespace qsmpc::harness {
 
-/// A file that is created when it is cleared.
+/// A file that is created by clear().
 class VideoFile::Bytes final : public render::ByteFile {
  public:
   explicit Bytes(std::string path) : path_(std::move(path)) {}

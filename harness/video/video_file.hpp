@@ -1,5 +1,5 @@
-// Video files, written so that whatever happens there is either a whole file or none under the name
-// asked for, and something playable beside it.
+// Crash-safe video files: at any time, the requested name holds either a complete file or none, and
+// a playable partial file stands beside it.
 //
 //   qsmpc::harness::VideoFile video("a.mp4", {.width = 1280, .height = 720, .frames_per_second =
 //   30}); for (…) { renderer.draw(frame, image); video.add(image); } video.finish();
@@ -14,14 +14,14 @@
 namespace qsmpc::harness {
 
 /// Writes PATH.partial, which stays playable if the process is killed, and turns it into PATH at
-/// the end. What cannot be written is an IoError with the file's path and the system's words.
+/// the end. Failed writes throw IoError with the file's path and the system's message.
 class VideoFile {
  public:
-  /// `settings.name` becomes `path`. Throws like VideoWriter, and IoError. PATH.partial is there
-  /// only once the settings are found to be right.
+  /// `settings.name` becomes `path`. Throws like VideoWriter, and IoError. PATH.partial is created
+  /// only after the settings have been validated.
   VideoFile(std::string path, render::VideoSettings settings);
 
-  /// Without `finish` nothing is left under the final name; PATH.partial keeps what was added.
+  /// Without `finish` nothing is written under the final name; PATH.partial keeps what was added.
   ~VideoFile();
   VideoFile(const VideoFile&) = delete;
   VideoFile& operator=(const VideoFile&) = delete;

@@ -1,4 +1,4 @@
-// What making a video cost, and what came out: for people who wait for it and for the report.
+// The cost and the properties of a video, for the terminal and the report.
 #pragma once
 
 #include <string>
@@ -7,25 +7,25 @@
 
 namespace qsmpc::harness {
 
-/// Times are wall-clock times, so that they are longer where other work shares the processor.
+/// Times are wall-clock times, so they are longer if other work shares the processor.
 struct VideoTimings {
   int frames = 0;
-  int fps = 0;                 ///< frames a second when played
-  double from = 0.0;           ///< s of the episode, where the video begins
-  double speed = 1.0;          ///< s of the episode in a second of the video
+  int fps = 0;                 ///< frames per second when played
+  double from = 0.0;           ///< time of the episode at which the video begins, s
+  double speed = 1.0;          ///< seconds of the episode per second of video
   int width = 0;               ///< pixels
   int height = 0;              ///< pixels
   std::string codec{};         ///< as ffprobe names it, e.g. "h264"
-  double wall_s = 0.0;         ///< s, from the first frame's beginning to the finished file
-  double drawing_ms = 0.0;     ///< ms a frame in a thread that draws; threads draw side by side
-  double encoding_ms = 0.0;    ///< ms a frame that conversion and encoder keep their thread
-  double simulation_ms = 0.0;  ///< ms a control period, what the plant took when it was driven
-  std::string gl = {};         ///< what drew: OpenGL's version and renderer
+  double wall_s = 0.0;         ///< from the start of the first frame to the finished file, s
+  double drawing_ms = 0.0;     ///< per frame in one drawing thread, ms; threads draw in parallel
+  double encoding_ms = 0.0;    ///< thread time per frame for conversion and encoder, ms
+  double simulation_ms = 0.0;  ///< time of the plant per control period during the drive, ms
+  std::string gl = {};         ///< OpenGL's version and renderer
 
-  /// s of the finished video when played.
+  /// Duration of the finished video when played, s.
   [[nodiscard]] double seconds() const;
 
-  /// How many frames were made in a second; 0 when no time passed.
+  /// Frames produced per second of wall-clock time; 0 if no time passed.
   [[nodiscard]] double frames_per_second() const;
 };
 
@@ -33,10 +33,10 @@ struct VideoTimings {
 /// 9 ms a frame)".
 [[nodiscard]] std::string video_line(const VideoTimings& timings);
 
-/// The keys documented in docs/video.md, ending with a line break.
+/// The keys documented in docs/video.md as JSON, ending in a newline.
 [[nodiscard]] std::string video_json(const VideoTimings& timings);
 
-/// What `video_json` wrote into the file at `path`. Throws InputError.
+/// Reads what `video_json` wrote from the file at `path`. Throws InputError.
 [[nodiscard]] VideoTimings read_video_timings(const std::string& path);
 
 }  // namespace qsmpc::harness

@@ -21,7 +21,7 @@ constexpr double kLeastAcceleration = -5.0;                        // m/s²
 constexpr double kLargestAcceleration = 2.0;                       // m/s²
 constexpr double kLargestSteeringAngle = 0.25 * std::numbers::pi;  // rad
 
-/// Batches go through loops made by hand.
+/// Batches use hand-written loops.
 class BicycleDynamics final : public TemplatedDynamics<Bicycle> {
  public:
   using TemplatedDynamics::TemplatedDynamics;
@@ -57,8 +57,8 @@ SystemDescription Bicycle::description() const {
   return description;
 }
 
-// ∂x⁺/∂φ is T times the speed, which nothing bounds, and the poles are in the state space: there is
-// no global constant, whatever the gain. Over a box there is one, see local_lipschitz.hpp.
+// ∂x⁺/∂φ is T times the speed, which is unbounded, and the poles are in the state space: no global
+// constant exists for any gain. Over a box there is one, see local_lipschitz.hpp.
 double Bicycle::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const {
   if (gain.rows() != kInputDim || gain.cols() != kStateDim) {
     throw std::invalid_argument("bicycle: the feedback gain must be 2 x 6");

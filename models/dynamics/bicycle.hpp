@@ -46,8 +46,8 @@ struct Bicycle {
   ///     v_y⁺ = (1 − S/(mv + S)) (v_y − T v ω − T k_f δ/m) + c ω/(mv + S),
   ///     ω⁺ = (1 − S'/(Iv + S')) (ω − T l_f k_f δ/I) + c v_y/(Iv + S'),
   ///
-  /// in which v stands in fewer places, which makes enclosures over boxes tighter. Its poles,
-  /// v = −S/m and v = −S'/I, are at negative speeds; the tyre model holds at positive ones.
+  /// in which v occurs fewer times, which makes enclosures over boxes tighter. Its poles, v = −S/m
+  /// and v = −S'/I, are at negative speeds; the tyre model holds at positive ones.
   template <class Scalar>
   void step(const Scalar* x, const Scalar* u, Scalar* next) const {
     using std::cos;
@@ -92,7 +92,7 @@ struct Bicycle {
 [[nodiscard]] std::unique_ptr<const Dynamics> make_bicycle(const ParameterMap& parameters,
                                                            double time_step);
 
-/// The entry of the table of systems.
+/// The entry in the table of systems.
 [[nodiscard]] SystemEntry bicycle_entry();
 
 }  // namespace qsmpc::models

@@ -10,7 +10,8 @@ HWY_BEFORE_NAMESPACE();
 namespace qsmpc::models {
 namespace HWY_NAMESPACE {
 
-/// The constants of Bicycle::step in all lanes, and what both directions need of a state.
+/// The constants of Bicycle::step in all lanes, and the functions of a state that both directions
+/// need.
 struct BicycleVectors {
   explicit BicycleVectors(const Bicycle& car)
       : period(constant(car.time_step)),
@@ -73,8 +74,8 @@ void bicycle_step(const Bicycle& car, const Dynamics::BatchView& states,
   });
 }
 
-/// With the letters of Bicycle::step: A, B the sums, C the coupling, F = 1/(mv + A), G = 1/(Iv +
-/// B), p and q the brackets that (1 − AF) and (1 − BG) multiply; ∂F/∂v = −mF², ∂G/∂v = −IG².
+/// In the notation of Bicycle::step: A, B the sums, C the coupling, F = 1/(mv + A), G = 1/(Iv + B),
+/// p and q the brackets that (1 − AF) and (1 − BG) multiply; ∂F/∂v = −mF², ∂G/∂v = −IG².
 void bicycle_pullback(const Bicycle& car, const Dynamics::BatchView& states,
                       const Dynamics::BatchView& inputs, const Dynamics::BatchView& next_adjoint,
                       Dynamics::BatchOut& state_adjoint, Dynamics::BatchOut& input_adjoint) {
@@ -108,7 +109,7 @@ void bicycle_pullback(const Bicycle& car, const Dynamics::BatchView& states,
     const Vector turn = yaw_rate + k.yaw_kick * steering;
     const Vector through_slip = of_lateral * (constant(1.0) - k.axle_sum * force);
     const Vector through_turn = of_yaw_rate * (constant(1.0) - k.moment_sum * moment);
-    // The parts of the position's adjoint along the car and to its left.
+    // The components of the position's adjoint along the car and to its left.
     const Vector along = of_x * direction.cosine + of_y * direction.sine;
     const Vector across = of_y * direction.cosine - of_x * direction.sine;
     const Vector force_slope = k.mass * force * force * (k.axle_sum * slip - k.coupling * yaw_rate);

@@ -1,4 +1,5 @@
-// The bicycle's step and its reverse mode for whole batches, for the processor's widest vectors.
+// SIMD loops for the bicycle's step and its reverse mode on whole batches, for the processor's
+// widest vectors.
 #pragma once
 
 #include "models/dynamics/bicycle.hpp"

@@ -13,7 +13,7 @@ constexpr const char* kCartPoleName = "cart_pole";
 constexpr const char* kCartPoleSummary =
     "Pole on a cart: position, velocity, pole angle (0 is upright), angular velocity; pushed by a "
     "force (Eq. D-3 to D-5)";
-// N. The force of the benchmark from which the default masses and length are.
+// N. The force of the benchmark that also gives the default masses and length.
 constexpr double kDefaultForceBound = 10.0;
 
 }  // namespace
@@ -32,8 +32,8 @@ SystemDescription CartPole::description() const {
   return description;
 }
 
-// ∂θ̈/∂θ and ∂θ̈/∂θ̇ grow with the angular velocity, which nothing bounds: there is no global
-// constant, whatever the gain. Over a box there is one, see local_lipschitz.hpp.
+// ∂θ̈/∂θ and ∂θ̈/∂θ̇ grow with the angular velocity, which is unbounded: no global constant exists
+// for any gain. Over a box there is one, see local_lipschitz.hpp.
 double CartPole::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const {
   if (gain.rows() != kInputDim || gain.cols() != kStateDim) {
     throw std::invalid_argument("cart_pole: the feedback gain must be 1 x 4");
@@ -53,8 +53,8 @@ std::unique_ptr<const Dynamics> make_cart_pole(const ParameterMap& parameters, d
       .time_step = time_step});
 }
 
-// The thesis prints no constants for this system, and no damping. These are those of Barto, Sutton
-// and Anderson, "Neuronlike adaptive elements that can solve difficult learning control problems",
+// The thesis gives no constants for this system, and no damping. These are from Barto, Sutton and
+// Anderson, "Neuronlike adaptive elements that can solve difficult learning control problems",
 // 1983.
 SystemEntry cart_pole_entry() {
   return {.name = kCartPoleName,

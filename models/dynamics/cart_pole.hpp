@@ -1,5 +1,5 @@
 // A pole on a cart (Eq. D-3 to D-5): the cart is pushed along a line, the pole hinged on it falls.
-// Discretised by the classical Runge-Kutta method, the force held over the period.
+// Discretised by the classical Runge-Kutta method, with the force held over the period.
 #pragma once
 
 #include <cmath>
@@ -33,7 +33,8 @@ struct CartPole {
   ///     θ̈ = (g sin θ − q cos θ − d θ̇/(m L)) / (L (4/3 − m cos²θ/(M + m))),
   ///     p̈ = q − m L θ̈ cos θ/(M + m).
   ///
-  /// The divisor is at least L/3. Eq. D-3 to D-5 are those of c = d = 0, which cost no operation.
+  /// The divisor is at least L/3. Eq. D-3 to D-5 are the case c = d = 0, in which the dampings cost
+  /// no operations.
   template <class Scalar>
   void derivative(const Scalar* x, const Scalar& force, Scalar* slope) const {
     using std::cos;
@@ -79,7 +80,7 @@ struct CartPole {
 [[nodiscard]] std::unique_ptr<const Dynamics> make_cart_pole(const ParameterMap& parameters,
                                                              double time_step);
 
-/// The entry of the table of systems.
+/// The entry in the table of systems.
 [[nodiscard]] SystemEntry cart_pole_entry();
 
 }  // namespace qsmpc::models

@@ -10,7 +10,7 @@
 namespace qsmpc::models {
 namespace {
 
-// m/s². Table B-4 bounds the speed (2 m/s) only; this reaches it within a second.
+// m/s². Table B-4 bounds only the speed (2 m/s); this acceleration reaches it within a second.
 constexpr double kDefaultAccelerationBound = 2.0;
 constexpr const char* kDoubleIntegratorName = "double_integrator";
 constexpr const char* kDoubleIntegratorSummary =

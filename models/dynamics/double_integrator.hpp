@@ -36,7 +36,7 @@ struct DoubleIntegrator {
 [[nodiscard]] std::unique_ptr<const Dynamics> make_double_integrator(const ParameterMap& parameters,
                                                                      double time_step);
 
-/// The entry of the table of systems.
+/// The entry in the table of systems.
 [[nodiscard]] SystemEntry double_integrator_entry();
 
 }  // namespace qsmpc::models

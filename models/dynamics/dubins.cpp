@@ -16,7 +16,7 @@ constexpr double kDefaultYawRateBound = 2.0;  // rad/s, Table B-1
 constexpr const char* kDubinsSummary =
     "Dubins car: x, y, heading; steered by its yaw rate (Eq. 5-1)";
 
-/// Batches go through loops made by hand.
+/// Batches use hand-written loops.
 class DubinsDynamics final : public TemplatedDynamics<Dubins> {
  public:
   using TemplatedDynamics::TemplatedDynamics;

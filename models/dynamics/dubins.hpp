@@ -1,4 +1,4 @@
-// The Dubins car (Eq. 5-1): constant speed, steered by its yaw rate, explicit Euler in the period.
+// The Dubins car (Eq. 5-1): constant speed, steered by its yaw rate, discretised by explicit Euler.
 #pragma once
 
 #include <cmath>
@@ -40,7 +40,7 @@ struct Dubins {
 [[nodiscard]] std::unique_ptr<const Dynamics> make_dubins(const ParameterMap& parameters,
                                                           double time_step);
 
-/// The entry of the table of systems.
+/// The entry in the table of systems.
 [[nodiscard]] SystemEntry dubins_entry();
 
 }  // namespace qsmpc::models

@@ -18,7 +18,7 @@ constexpr const char* kDubinsRk4Summary =
     "Dubins car by the Runge-Kutta method: x, y, heading; steered by its yaw rate, which it holds "
     "over a period";
 
-/// Batches go through loops made by hand.
+/// Batches use hand-written loops.
 class DubinsRk4Dynamics final : public TemplatedDynamics<DubinsRk4> {
  public:
   using TemplatedDynamics::TemplatedDynamics;
@@ -35,7 +35,7 @@ class DubinsRk4Dynamics final : public TemplatedDynamics<DubinsRk4> {
 
 }  // namespace
 
-// What the Dubins car is called, bounded and drawn by does not depend on how it is discretised.
+// Names, bounds and drawing are those of the Dubins car, independent of the discretisation.
 SystemDescription DubinsRk4::description() const {
   SystemDescription description = Dubins{.speed = speed, .time_step = time_step}.description();
   description.name = kDubinsRk4Name;

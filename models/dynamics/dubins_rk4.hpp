@@ -1,5 +1,5 @@
-// The Dubins car: constant speed, steered by its yaw rate. Discretised by the classical
-// Runge-Kutta method, the yaw rate held over the period: it then drives along an arc, where the
+// The Dubins car: constant speed, steered by its yaw rate. Discretised by the classical Runge-Kutta
+// method, with the yaw rate held over the period: the car then drives along an arc, whereas the
 // explicit Euler method of dubins.hpp (Eq. 5-1) drives along the tangent.
 #pragma once
 
@@ -32,12 +32,13 @@ struct DubinsRk4 {
     slope[kHeading] = yaw_rate;
   }
 
-  /// The heading is exact, and at the two middle stages the same; the position is Simpson's rule
-  /// along it, with e(φ) = (cos φ, sin φ):
+  /// The heading is exact, and the same at the two middle stages; the position follows by Simpson's
+  /// rule, with e(φ) = (cos φ, sin φ):
   ///
   ///     (x, y)⁺ = (x, y) + (vT/6) (e(φ) + 4 e(φ + uT/2) + e(φ + uT)),    φ⁺ = φ + uT.
   ///
-  /// It is off the arc by vT (uT)⁴/2880 at most. The heading is never wrapped, see dubins.hpp.
+  /// It deviates from the arc by at most vT (uT)⁴/2880. The heading is never wrapped, see
+  /// dubins.hpp.
   template <class Scalar>
   void step(const Scalar* x, const Scalar* u, Scalar* next) const {
     const auto slopes = [&](const Scalar* at, Scalar* slope) {
@@ -56,7 +57,7 @@ struct DubinsRk4 {
 [[nodiscard]] std::unique_ptr<const Dynamics> make_dubins_rk4(const ParameterMap& parameters,
                                                               double time_step);
 
-/// The entry of the table of systems.
+/// The entry in the table of systems.
 [[nodiscard]] SystemEntry dubins_rk4_entry();
 
 }  // namespace qsmpc::models

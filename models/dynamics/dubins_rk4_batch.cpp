@@ -10,8 +10,8 @@ HWY_BEFORE_NAMESPACE();
 namespace qsmpc::models {
 namespace HWY_NAMESPACE {
 
-/// Where the car points at the beginning, the middle and the end of the period. The latter two
-/// follow by turning, which takes one sine and cosine instead of two.
+/// The car's directions at the beginning, the middle and the end of the period. The latter two
+/// follow by rotation, which takes one sine and cosine instead of two.
 struct Directions {
   SineCosine begin;
   SineCosine middle;
@@ -61,7 +61,7 @@ void rk4_step(const DubinsRk4& car, const Dynamics::BatchView& states,
 //
 //     ∂/∂φ = (a/6) p·(e'₀ + 4 e'₁ + e'₂),    ∂/∂u = (aT/6) p·(2 e'₁ + e'₂),
 //
-// and the new heading adds its own adjoint to the one, T times that to the other.
+// and the new heading adds its own adjoint to the former and T times it to the latter.
 void rk4_pullback(const DubinsRk4& car, const Dynamics::BatchView& states,
                   const Dynamics::BatchView& inputs, const Dynamics::BatchView& next_adjoint,
                   Dynamics::BatchOut& state_adjoint, Dynamics::BatchOut& input_adjoint) {

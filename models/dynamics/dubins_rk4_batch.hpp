@@ -1,4 +1,5 @@
-// The step along arcs and its reverse mode for whole batches, for the processor's widest vectors.
+// SIMD loops for the Dubins car's step along arcs and its reverse mode on whole batches, for the
+// processor's widest vectors.
 #pragma once
 
 #include "models/dynamics/dubins_rk4.hpp"

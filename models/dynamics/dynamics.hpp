@@ -1,7 +1,7 @@
 // A controlled discrete-time system x⁺ = f(x, u), evaluated on whole batches of states.
 //
 // The planner, the propagators and the certificates know systems only through this interface;
-// process noise is additive and belongs to the one who propagates: x⁺ = f(x, u) + w.
+// process noise is additive and is the caller's concern: x⁺ = f(x, u) + w.
 //
 //   auto car = qsmpc::models::make_dynamics("dubins", {{"speed", 1.5}}, /*time_step=*/0.1);
 //   StateBatch next(3, n);
@@ -21,15 +21,15 @@
 
 namespace qsmpc::models {
 
-/// A batch of vectors, one coordinate a row and one particle a column, so that a coordinate of all
-/// particles is contiguous in memory.
+/// A batch of vectors, one coordinate per row and one particle per column, so that each coordinate
+/// is contiguous in memory over all particles.
 using StateBatch = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// One coordinate of a state or of an input.
 struct Coordinate {
   std::string name;       ///< as users write it in scenario files, e.g. "x"
   std::string unit;       ///< SI symbol, e.g. "m", "rad", "rad/s"
-  bool is_angle = false;  ///< whether values 2π apart mean the same
+  bool is_angle = false;  ///< whether values 2π apart are equivalent
 };
 
 /// The names of a system's states and inputs, its default input bounds, and which two states are
@@ -41,7 +41,7 @@ struct SystemDescription {
   std::vector<Coordinate> inputs;
   Eigen::VectorXd input_lower;  ///< input_dim
   Eigen::VectorXd input_upper;  ///< input_dim
-  /// Indices of the states that are drawn as x, y and heading; -1 where a system has none.
+  /// Indices of the states that are drawn as x, y and heading; -1 if the system has none.
   int position_x = -1;
   int position_y = -1;
   int heading = -1;
@@ -50,7 +50,7 @@ struct SystemDescription {
   [[nodiscard]] int state_index(std::string_view name) const;
 };
 
-/// What a system is made of if its position is carried by its heading alone:
+/// The structure of a system whose position is driven by its heading only:
 ///     (x, y)⁺ = (x, y) + reach (cos φ, sin φ),  φ⁺ = φ + input_gain · u[input].
 /// Certificates use it: the position is then an explicit function of the headings.
 struct UnicycleStructure {
@@ -58,12 +58,12 @@ struct UnicycleStructure {
   int y = 1;
   int heading = 2;
   int input = 0;
-  double reach = 0.0;       ///< m a period
+  double reach = 0.0;       ///< m per period
   double input_gain = 0.0;  ///< rad per unit of the input and period
 };
 
 /// Enclosures of the derivatives of f over a box of states and inputs, z = (x, u). An entry is
-/// infinite where no finite enclosure is known, never NaN.
+/// infinite if no finite enclosure is known, never NaN.
 struct DerivativeBounds {
   Eigen::MatrixXd jacobian_lower;  ///< state_dim x (state_dim + input_dim): ∂f_i/∂z_a
   Eigen::MatrixXd jacobian_upper;
@@ -72,16 +72,15 @@ struct DerivativeBounds {
   std::vector<Eigen::MatrixXd> hessian_upper;
 };
 
-/// Bounds that say nothing, for f with these dimensions.
+/// Infinite bounds for f with these dimensions: nothing is known.
 [[nodiscard]] DerivativeBounds unknown_derivative_bounds(int state_dim, int input_dim);
 
-/// Throws std::invalid_argument unless lower ≤ upper is a box of (x, u) of `system` with a point in
-/// it.
+/// Throws std::invalid_argument unless lower ≤ upper is a non-empty box of (x, u) of `system`.
 void check_box(const SystemDescription& system, const Eigen::Ref<const Eigen::VectorXd>& lower,
                const Eigen::Ref<const Eigen::VectorXd>& upper);
 
 /// x⁺ = f(x, u) over one control period. Implementations hold constants only: every function is
-/// const, thread-safe and, but for results returned by value, allocates nothing.
+/// const, thread-safe and allocation-free, except for results returned by value.
 class Dynamics {
  public:
   using BatchView = Eigen::Ref<const StateBatch>;
@@ -111,28 +110,29 @@ class Dynamics {
 
   /// A rigorous upper bound of the Lipschitz constant, in the Euclidean norm, of
   /// x ↦ f(x, sat(v + K (x − x̄))) over all x, v and x̄, where `sat` clamps to any box.
-  /// gain: K, input_dim x state_dim; zero for an open-loop policy. Infinity where no global bound
-  /// is known, so that a certificate built on it is trivial instead of wrong.
+  /// gain: K, input_dim x state_dim; zero for an open-loop policy. Infinity if no global bound is
+  /// known, so that a certificate built on it is trivial instead of wrong.
   [[nodiscard]] virtual double lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const = 0;
 
   /// Enclosures of f's first and second derivatives over the box lower ≤ (x, u) ≤ upper, rounding
-  /// included. lower, upper: state_dim + input_dim, the states first; infinite where not
-  /// restricted, which costs nothing in coordinates in which f is affine with constant
-  /// coefficients. Of the box of one point these are the derivatives there, but for rounding.
-  /// Throws std::invalid_argument on another size or where lower ≤ upper does not hold. A system
-  /// that does not override this says nothing of its derivatives.
+  /// included. lower, upper: state_dim + input_dim, the states first; infinite where unrestricted,
+  /// which costs nothing in coordinates in which f is affine with constant coefficients. For a box
+  /// of a single point these are the derivatives there, up to rounding. Throws
+  /// std::invalid_argument on another size or unless lower ≤ upper. The default returns
+  /// unknown_derivative_bounds.
   [[nodiscard]] virtual DerivativeBounds derivative_bounds(
       const Eigen::Ref<const Eigen::VectorXd>& lower,
       const Eigen::Ref<const Eigen::VectorXd>& upper) const;
 
-  /// The unicycle that this system is, exactly, if it is one with three states and one input.
+  /// The unicycle structure, if this system is exactly a unicycle with three states and one input.
   [[nodiscard]] virtual std::optional<UnicycleStructure> unicycle() const { return std::nullopt; }
 };
 
 /// A system's numeric constants by name, e.g. {"speed", 1.5}.
 using ParameterMap = std::map<std::string, double, std::less<>>;
 
-/// What `qsmpc list systems` and the scenario loader need to know of a system before it is built.
+/// What `qsmpc list systems` and the scenario loader need to know about a system before it is
+/// built.
 struct SystemEntry {
   std::string name;
   std::string summary;
@@ -145,8 +145,8 @@ struct SystemEntry {
 [[nodiscard]] const std::vector<SystemEntry>& systems();
 
 /// Builds the system called `name` for the control period `time_step` (s, > 0). Parameters not
-/// given take their default. Throws std::invalid_argument on an unknown system or parameter, or
-/// on a value out of its range; the message says what is known.
+/// given take their default. Throws std::invalid_argument on an unknown system or parameter, naming
+/// the known ones, or on a value out of its range.
 [[nodiscard]] std::unique_ptr<const Dynamics> make_dynamics(std::string_view name,
                                                             const ParameterMap& parameters,
                                                             double time_step);

@@ -1,15 +1,16 @@
-// Closed intervals of real numbers, and arithmetic that encloses: the result of an operation holds
-// every value that the operation takes on the operands.
+// Closed intervals of real numbers with enclosing arithmetic: the result of an operation contains
+// every value that the operation takes on its operands.
 //
 //   const Interval speed(4.0, 6.0);
 //   const Interval share = 1.0 / (speed + 2.0);  // holds [1/8, 1/6]
 //
-// Ends may be infinite: [-inf, inf] says that nothing is known, and is what a division by an
-// interval around zero gives. No operation gives NaN. This is not Boost's interval, because there 0
-// · [-inf, inf], sines of unbounded intervals and divisions by zero are NaN, errors or dependent on
-// the policy, and because its directed rounding switches the processor's mode twice an operation.
-// Here results are rounded to nearest and then moved outwards by at least one unit in the last
-// place, which encloses the rounding of the operation; only underflow is not accounted for.
+// Ends may be infinite: [-inf, inf] means that nothing is known, and is the result of a division by
+// an interval that contains zero. No operation returns NaN. Boost's interval is not used because
+// its 0 · [-inf, inf], sines of unbounded intervals and divisions by zero are NaN, errors or
+// policy-dependent, and because its directed rounding switches the processor's mode twice per
+// operation. Here results are rounded to nearest and then moved outwards by at least one unit in
+// the last place, which encloses the rounding of the operation; only underflow is not accounted
+// for.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace qsmpc::models {
 class Interval {
  public:
   constexpr Interval() = default;
-  /// The one number `value`, finite. Implicit, so that constants mix with intervals.
+  /// The single number `value`, finite. Implicit, so that constants mix with intervals.
   constexpr Interval(double value) : lower_(value), upper_(value) {}  // NOLINT: implicit
   /// lower ≤ upper; no check, see the arithmetic.
   constexpr Interval(double lower, double upper) : lower_(lower), upper_(upper) {}
@@ -30,9 +31,9 @@ class Interval {
   [[nodiscard]] static constexpr Interval everything() {
     return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   }
-  /// The interval between two computed ends, moved outwards by `roundings` relative 2⁻⁵², which is
-  /// at least as many units in the last place. An end that is NaN, or that overflowed to the wrong
-  /// side, says nothing: the result is then unbounded there.
+  /// The interval between two computed ends, moved outwards by a relative `roundings` · 2⁻⁵², which
+  /// is at least as many units in the last place. An end that is NaN, or that overflowed to the
+  /// wrong side, gives no information: the result is then everything.
   [[nodiscard]] static Interval rounded(double lower, double upper, double roundings = 1.0) {
     if (!(lower <= upper)) return everything();
     constexpr double kLargest = std::numeric_limits<double>::max();
@@ -67,7 +68,8 @@ inline Interval operator-(const Interval& a, const Interval& b) { return a + (-b
 inline Interval operator*(const Interval& a, const Interval& b) {
   // Most derivatives of a step are zero, and zero times an infinite end would be NaN.
   if (a.is_zero() || b.is_zero()) return {};
-  // The supremum of a product whose one factor only tends to infinity while the other is zero is 0.
+  // Zero times an infinite end is 0: the one factor is exactly zero, the other only tends to
+  // infinity.
   const auto times = [](double s, double t) { return s == 0.0 || t == 0.0 ? 0.0 : s * t; };
   const double low_low = times(a.lower(), b.lower());
   const double low_high = times(a.lower(), b.upper());
@@ -77,7 +79,7 @@ inline Interval operator*(const Interval& a, const Interval& b) {
                            std::max(std::max(low_low, low_high), std::max(high_low, high_high)));
 }
 
-/// 1/a; everything where a touches zero.
+/// 1/a; everything if a contains zero.
 inline Interval inverse(const Interval& a) {
   if (a.contains(0.0)) return Interval::everything();
   return Interval::rounded(1.0 / a.upper(), 1.0 / a.lower());
@@ -85,7 +87,7 @@ inline Interval inverse(const Interval& a) {
 
 inline Interval operator/(const Interval& a, const Interval& b) { return a * inverse(b); }
 
-/// {a² : a in the interval}, which a · a encloses too widely around zero.
+/// {a² : a in the interval}; a · a would be too wide around zero.
 inline Interval square(const Interval& a) {
   const double low = std::abs(a.lower());
   const double high = std::abs(a.upper());
@@ -94,7 +96,7 @@ inline Interval square(const Interval& a) {
   return Interval::rounded(least * least, largest * largest);
 }
 
-/// Of the part of the interval that is not negative; everything where there is none.
+/// The square root of the non-negative part of the interval; everything if there is none.
 inline Interval sqrt(const Interval& a) {
   if (!(a.upper() >= 0.0)) return Interval::everything();
   return Interval::rounded(std::sqrt(std::max(a.lower(), 0.0)), std::sqrt(a.upper()));
@@ -102,12 +104,13 @@ inline Interval sqrt(const Interval& a) {
 
 namespace interval_detail {
 
-/// The mathematical library's sine, cosine and tangent are exact to less than two units.
+/// The mathematical library's sine, cosine and tangent are accurate to less than two units in the
+/// last place.
 inline constexpr double kLibraryRoundings = 4.0;
 
-/// The whole numbers n for which (n + shift)·π is in the interval (width below 2π) are
-/// first … last. Numbers that only rounding could put inside count as inside: the slack is larger
-/// than the rounding of the two lines below, and so small that a sine is flat to rounding over it.
+/// The integers n for which (n + shift)·π is in the interval (width below 2π) are first … last.
+/// Integers that only rounding could put inside count as inside: the slack exceeds the rounding of
+/// the computation below, and is so small that a sine is flat up to rounding over it.
 struct Multiples {
   double first;
   double last;
@@ -152,7 +155,7 @@ inline Interval sin(const Interval& angle) {
                                         0.5);
 }
 
-/// Everything where the interval touches a pole.
+/// Everything if the interval contains a pole.
 inline Interval tan(const Interval& angle) {
   if (interval_detail::covers_a_period(angle)) return Interval::everything();
   const auto [first, last] = interval_detail::multiples_of_pi(angle, 0.5);
@@ -169,7 +172,7 @@ inline Interval exp(const Interval& a) {
           std::max(range.upper(), std::numeric_limits<double>::denorm_min())};
 }
 
-/// Of the part of the interval that is above zero; everything where there is none.
+/// The logarithm of the positive part of the interval; everything if there is none.
 inline Interval log(const Interval& a) {
   if (!(a.upper() > 0.0)) return Interval::everything();
   return Interval::rounded(std::log(std::max(a.lower(), 0.0)), std::log(a.upper()),
@@ -181,7 +184,7 @@ inline Interval atan(const Interval& a) {
                            interval_detail::kLibraryRoundings);
 }
 
-/// Everything where the interval leaves [-1, 1].
+/// Everything if the interval leaves [-1, 1].
 inline Interval asin(const Interval& a) {
   if (!(a.lower() >= -1.0 && a.upper() <= 1.0)) return Interval::everything();
   return Interval::rounded(std::asin(a.lower()), std::asin(a.upper()),
@@ -221,11 +224,11 @@ inline Interval min(const Interval& a, const Interval& b) {
 inline Interval max(const Interval& a, const Interval& b) {
   return {std::max(a.lower(), b.lower()), std::max(a.upper(), b.upper())};
 }
-/// The smallest interval that holds both.
+/// The smallest interval that contains both.
 inline Interval hull(const Interval& a, const Interval& b) {
   return {std::min(a.lower(), b.lower()), std::max(a.upper(), b.upper())};
 }
-/// What is in both, where it is known that something is.
+/// The intersection of two intervals that are known to overlap.
 inline Interval intersection(const Interval& a, const Interval& b) {
   return {std::max(a.lower(), b.lower()), std::min(a.upper(), b.upper())};
 }
@@ -236,8 +239,8 @@ inline bool atan2_is_continuous(const Interval& y, const Interval& x) {
   return x.lower() > 0.0 || !y.contains(0.0);
 }
 
-/// The whole turn where atan2 is not continuous over the box. Else the box is convex without the
-/// origin, so that the extreme angles are at its corners.
+/// The full turn if atan2 is not continuous over the box. Otherwise the box is convex and excludes
+/// the origin, so that the extreme angles are at its corners.
 inline Interval atan2(const Interval& y, const Interval& x) {
   const Interval turn = Interval::rounded(-std::numbers::pi, std::numbers::pi);
   if (!atan2_is_continuous(y, x)) return turn;

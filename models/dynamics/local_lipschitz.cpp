@@ -11,7 +11,8 @@
 namespace qsmpc::models {
 namespace {
 
-// Midpoints, radii and norms are rounded: far more than 1e-15 for each entry of a small matrix.
+// Allows for rounding of midpoints, radii and norms: far more than 1e-15 per entry of a small
+// matrix.
 constexpr double kRoundingAllowance = 1e-12;
 
 /// Entry (row, column) of the closed loop's Jacobian ∂f/∂x + Σ_j s_j ∂f/∂u_j K_j, with all slopes

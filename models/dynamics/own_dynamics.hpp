@@ -1,5 +1,5 @@
-// A system of one's own in C++, compiled outside of qsmpc into a shared library that a scenario
-// names. The whole of it:
+// A user-defined system in C++, compiled outside qsmpc into a shared library that a scenario names.
+// A complete example:
 //
 //   #include <qsmpc/models/dynamics/own_dynamics.hpp>
 //
@@ -24,12 +24,11 @@
 //   };
 //   QSMPC_REGISTER_DYNAMICS(Cart)
 //
-// `step` is compiled for double and for a scalar that records what is done to it, from which
-// qsmpc makes derivatives, their enclosures and loops over batches. It takes the arithmetic and the
-// functions of <cmath> that are declared below; it cannot ask whether one value is less than
-// another: use min, max, abs, or tanh.
+// `step` is compiled for double and for a scalar that records the operations on it, from which
+// qsmpc generates derivatives, their enclosures and loops over batches. It may use arithmetic and
+// the <cmath> functions declared below, but cannot compare values: use min, max, abs or tanh.
 //
-// Needs the standard library alone, and nothing to link with. A constructor refuses parameters by
+// This header needs only the standard library and no linking. A constructor rejects parameters by
 // throwing std::invalid_argument.
 #pragma once
 
@@ -46,7 +45,7 @@
 #include <utility>
 #include <vector>
 
-#include "own_dynamics_abi.h"  // beside this file wherever it is installed
+#include "own_dynamics_abi.h"  // installed beside this file
 
 #if defined(__GNUC__) || defined(__clang__)
 #define QSMPC_OWN_EXPORT __attribute__((visibility("default"), used))
@@ -61,7 +60,7 @@ namespace qsmpc::own {
 struct State {
   const char* name;
   const char* unit = "";  ///< SI symbol, e.g. "m/s"
-  bool is_angle = false;  ///< whether values 2π apart mean the same
+  bool is_angle = false;  ///< whether values 2π apart are equivalent
 };
 
 struct Input {
@@ -74,23 +73,23 @@ struct Input {
 struct Parameter {
   const char* name;
   const char* unit;
-  double value;  ///< unless the scenario gives another
+  double value;  ///< default; a scenario may give another
 };
 
-/// What a system is called, and what it has. Texts must outlive the library: use literals.
+/// The description of a system. Strings must outlive the library: use literals.
 struct System {
   const char* name;
   const char* summary = "";  ///< one line
   std::vector<State> states;
   std::vector<Input> inputs;
   std::vector<Parameter> parameters{};
-  /// Names of states, where there are such: of the position in the plane, and of the heading.
+  /// Names of the states of position in the plane and heading; empty if there are none.
   const char* position_x = "";
   const char* position_y = "";
   const char* heading = "";
 };
 
-/// What a model is made from.
+/// The argument of a model's constructor.
 class Setup {
  public:
   Setup(double control_period, const std::vector<Parameter>& parameters, const double* values)
@@ -117,7 +116,7 @@ class Setup {
   const double* values_;
 };
 
-/// A number that notes what is done to it.
+/// A number that records the operations on it.
 class Recorded {
  public:
   Recorded() = default;
@@ -199,13 +198,13 @@ class Recorded {
     return {recorder, noted(recorder, operation, first, second, 0.0)};
   }
 
-  const qsmpc_recorder* recorder_ = nullptr;  // of a constant: none
+  const qsmpc_recorder* recorder_ = nullptr;  // null for a constant
   std::int32_t number_ = 0;
   double constant_ = 0.0;
 };
 
-/// The table's entry of `Model`. Hidden like what follows: two libraries in one program must not
-/// share it.
+/// The table entry of `Model`. Hidden, like the functions below: two libraries in one program must
+/// not share it.
 template <class Model>
 class QSMPC_OWN_HIDDEN Registration {
  public:
@@ -311,7 +310,7 @@ class QSMPC_OWN_HIDDEN Registration {
   qsmpc_system entry_{};
 };
 
-/// The systems of the library, in the order in which they were registered.
+/// The systems of the library, in order of registration.
 QSMPC_OWN_HIDDEN inline std::vector<const qsmpc_system*>& registered_systems() {
   static std::vector<const qsmpc_system*> systems;
   return systems;
@@ -331,12 +330,12 @@ QSMPC_OWN_HIDDEN inline const qsmpc_dynamics_table* table() {
 
 }  // namespace qsmpc::own
 
-/// What qsmpc looks up in the library.
+/// The symbol that qsmpc looks up in the library.
 extern "C" QSMPC_OWN_EXPORT inline const qsmpc_dynamics_table* qsmpc_dynamics() {
   return qsmpc::own::table();
 }
 
-/// Makes a system of the library known. Once for each system, outside of any namespace.
+/// Registers a system of the library. Use it once per system, outside any namespace.
 #define QSMPC_REGISTER_DYNAMICS(Model)                             \
   [[maybe_unused]] static const bool qsmpc_is_registered_##Model = \
       qsmpc::own::add_system(qsmpc::own::Registration<Model>::entry());

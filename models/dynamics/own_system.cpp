@@ -16,7 +16,7 @@ namespace qsmpc::models {
 namespace {
 
 constexpr std::size_t kMessageSize = 512;  // bytes
-// The recording and the step sum alike, with sines that differ in the last place.
+// The recording and the step perform the same sums, but their sines differ in the last place.
 constexpr double kRounding = 1e-9;
 constexpr int kComparedPoints = 16;
 
@@ -32,7 +32,7 @@ void check_name(const char* section, const std::string& name) {
 
 int index_of(std::int32_t index, std::int32_t count) { return index < count ? index : -1; }
 
-/// A model of the library's, which ends with this.
+/// Owns a model of the library.
 class OwnModel {
  public:
   OwnModel(const qsmpc_system& system, const EquationSystem& described, double time_step,
@@ -67,7 +67,7 @@ class OwnModel {
       u[i] = inputs.data() + i * inputs.outerStride();
     }
     const auto count = static_cast<std::size_t>(states.cols());
-    // What it cannot say is no number, which the planner and the plant take as a fault.
+    // A failed step gives NaN, which the planner and the plant treat as a fault.
     if (system_.step(model_, count, x.data(), u.data(), y.data()) != 0)
       next.setConstant(kNotANumber);
   }
@@ -154,7 +154,7 @@ std::int32_t note(void* context, std::int32_t code, std::int32_t a, std::int32_t
   if (!is_value(a) || !is_value(b)) return -1;
   try {
     return put(tape, code, a, b, constant);
-  } catch (const std::exception&) {  // longer than a tape may be
+  } catch (const std::exception&) {  // the tape would be too long
     return -1;
   }
 }
@@ -171,7 +171,7 @@ Tape OwnModel::recorded() const {
   return tape;
 }
 
-/// Steps alone are known.
+/// Only steps are known.
 class PlainDynamics final : public Dynamics {
  public:
   PlainDynamics(SystemDescription description, std::unique_ptr<const OwnModel> model)
@@ -210,9 +210,9 @@ class PlainDynamics final : public Dynamics {
   }
 
  private:
-  /// The central difference of the step by row `row` of `moved`, which is `x` or `u`.
+  /// The central difference of the step with respect to row `row` of `moved`, which is `x` or `u`.
   [[nodiscard]] StateBatch slope(StateBatch& x, StateBatch& u, StateBatch& moved, int row) const {
-    constexpr double kStep = 6e-6;  // the cube root of the rounding
+    constexpr double kStep = 6e-6;  // cube root of the rounding error
     const Eigen::RowVectorXd before = moved.row(row);
     const Eigen::RowVectorXd by = kStep * before.cwiseAbs().cwiseMax(1.0);
     StateBatch high(x.rows(), x.cols());
@@ -229,7 +229,8 @@ class PlainDynamics final : public Dynamics {
   std::unique_ptr<const OwnModel> model_;
 };
 
-/// Throws std::invalid_argument where the two steps differ at a point of the inputs' bounds.
+/// Throws std::invalid_argument if the two steps differ at one of several random points within the
+/// input bounds.
 void compare(const Dynamics& recorded, const OwnModel& model) {
   const SystemDescription& system = recorded.description();
   std::mt19937_64 generator(1);

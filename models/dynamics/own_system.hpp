@@ -1,4 +1,4 @@
-// The systems of a library of one's own (own_dynamics_abi.h), as Dynamics.
+// The systems of a user-defined library (own_dynamics_abi.h), as Dynamics.
 #pragma once
 
 #include <memory>
@@ -9,15 +9,15 @@
 
 namespace qsmpc::models {
 
-/// What `system` says of itself, with its parameters' defaults; no equations. Throws
-/// EquationError where that cannot be, with "states", "inputs" or "parameters" as section.
+/// The description of `system` with the defaults of its parameters, without equations. Throws
+/// EquationError if it is invalid, with "states", "inputs" or "parameters" as the section.
 [[nodiscard]] EquationSystem own_system_of(const qsmpc_system& system);
 
 /// The step of `system`, with the parameters of `described` (own_system_of, values changed).
 /// `owner` keeps the library in memory for as long as the result needs it. Throws
-/// std::invalid_argument with the system's own words where it refuses its parameters, or where what
-/// it records is not its step. Without a recording derivatives are finite differences, and nothing
-/// is known of their bounds.
+/// std::invalid_argument if the system rejects its parameters, with its own message, or if its
+/// recording differs from its step. Without a recording, derivatives are finite differences and
+/// their bounds are unknown.
 [[nodiscard]] std::unique_ptr<const Dynamics> make_own_dynamics(const qsmpc_system& system,
                                                                 const EquationSystem& described,
                                                                 double time_step,

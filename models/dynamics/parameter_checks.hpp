@@ -1,4 +1,4 @@
-// The checks that the systems share when they are built.
+// Checks of parameters, shared by the systems.
 #pragma once
 
 #include <string_view>

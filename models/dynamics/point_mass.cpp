@@ -12,7 +12,7 @@ namespace qsmpc::models {
 namespace {
 
 constexpr double kDefaultPush = 2.0;    // m/s²
-constexpr double kSmallDamping = 1e-4;  // c T below which the series is as exact
+constexpr double kSmallDamping = 1e-4;  // below this c T the series is as accurate
 constexpr const char* kPointMassName = "point_mass";
 constexpr const char* kPointMassSummary =
     "Point in the plane: position, velocity; driven by its acceleration along x and y";

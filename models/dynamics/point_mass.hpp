@@ -42,7 +42,7 @@ struct PointMass {
 [[nodiscard]] std::unique_ptr<const Dynamics> make_point_mass(const ParameterMap& parameters,
                                                               double time_step);
 
-/// The entry of the table of systems.
+/// The entry in the table of systems.
 [[nodiscard]] SystemEntry point_mass_entry();
 
 }  // namespace qsmpc::models

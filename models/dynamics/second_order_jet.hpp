@@ -1,5 +1,5 @@
-// Second-order forward-mode differentiation over intervals: an enclosure of a function's values, of
-// its gradient and of its Hessian over a box, carried through every operation by the chain rule.
+// Second-order forward-mode differentiation over intervals: enclosures of a function's values,
+// gradient and Hessian over a box, propagated through every operation by the chain rule.
 //
 //   using Jet = SecondOrderJet<2>;
 //   const Jet x = Jet::variable(Interval(1.0, 2.0), 0);
@@ -7,7 +7,7 @@
 //   const Jet z = x * sin(y);  // z.hessian(0, 1) encloses cos(y)
 //
 // The enclosures are those of the arithmetic as written: where a variable occurs several times,
-// they are wider than the true ranges, so a model is best written with few occurrences of each.
+// they are wider than the true ranges, so write a model with few occurrences of each variable.
 #pragma once
 
 #include <array>
@@ -178,7 +178,7 @@ class SecondOrderJet {
     });
     return result;
   }
-  /// Whole exponents of any base; others of a base above 0.
+  /// Integer exponents for any base; other exponents for a base above 0.
   friend SecondOrderJet pow(const SecondOrderJet& f, double exponent) {
     constexpr double kMostFactors = 64.0;
     if (exponent < 0.0) return inverse(pow(f, -exponent));
@@ -230,7 +230,7 @@ class SecondOrderJet {
     });
   }
 
-  /// A linear function of one jet or of two, part by part.
+  /// Applies a linear function of one or two jets component by component.
   template <class Function>
   static SecondOrderJet map(const SecondOrderJet& f, Function function) {
     SecondOrderJet result;
@@ -254,7 +254,7 @@ class SecondOrderJet {
     return result;
   }
 
-  /// f or g, where either may be the one: a kink, at which no second derivative is known.
+  /// The result where it may be f or g: a kink, at which no second derivative is known.
   static SecondOrderJet either(const SecondOrderJet& f, const SecondOrderJet& g,
                                const Interval& value) {
     SecondOrderJet result = unknown(f, g, value);
@@ -262,7 +262,7 @@ class SecondOrderJet {
              [&](int a) { result.gradient_[a] = hull(f.gradient_[a], g.gradient_[a]); });
     return result;
   }
-  /// A function of f and g of which the values alone are known.
+  /// A function of f and g of which only the values are known.
   static SecondOrderJet unknown(const SecondOrderJet& f, const SecondOrderJet& g,
                                 const Interval& value) {
     SecondOrderJet result;

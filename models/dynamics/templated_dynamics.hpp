@@ -7,7 +7,7 @@
 //   double lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const;
 //
 // and one line in the table of dynamics.cpp. A hot system may derive from TemplatedDynamics and
-// override `step` and `pullback`; the tests hold the overrides against what is derived here.
+// override `step` and `pullback`; the tests compare the overrides with the functions derived here.
 #pragma once
 
 #include <utility>

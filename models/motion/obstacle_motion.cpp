@@ -7,11 +7,11 @@
 namespace qsmpc::models {
 namespace {
 
-// Before and after a time, within which the direction is taken, s.
+// Half-width of the time window in which the direction is taken, s.
 constexpr double kHalfTurn = 0.5;
-// Probabilities may be written in decimals.
+// Probabilities may be rounded decimals.
 constexpr double kProbabilitySlack = 1e-6;
-// Of an offset within that time that is none, m.
+// A smaller offset within that window counts as standing still, m.
 constexpr double kStandsStill = 1e-9;
 
 void require(bool holds, const char* expected) {
@@ -105,7 +105,7 @@ double way_direction(const IntendedWay& way, double time) {
            intended_offset(way, std::max(0.0, at - kHalfTurn));
   };
   Eigen::Vector2d line = chord(time);
-  // Where it stands still, the last line that it went, or the first that it will go.
+  // During a standstill, the previous direction, or else the first one to come.
   for (auto point = way.points.rbegin(); line.norm() < kStandsStill && point != way.points.rend();
        ++point) {
     if (point->time < time) line = chord(point->time);

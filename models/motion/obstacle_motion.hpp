@@ -1,5 +1,5 @@
-// How an obstacle of the plane moves: along one of several ways that it may intend, and off it by
-// Gaussian disturbances, so that where it will be is a mixture of Gaussians exactly
+// The motion of an obstacle in the plane: along one of several intended ways, with Gaussian
+// deviations from it, so that its future place is exactly a mixture of Gaussians
 // (docs/theory/motion.md).
 //
 //   const ObstacleMotion walker = {.ways = {steady_way({1.2, 0.0})}, .speed_deviation = {0.2, 0}};
@@ -15,44 +15,44 @@
 
 namespace qsmpc::models {
 
-/// Where something means to be at a time.
+/// An intended place at a given time.
 struct TimedPlace {
   double time = 0.0;                                ///< s
-  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< of its centre, m
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< of the obstacle's centre, m
 };
 
-/// One way that it may intend to go.
+/// A way that an obstacle may intend to take.
 struct IntendedWay {
   double probability = 1.0;
-  /// By ascending times, straight on between them; the first at time 0, which is where its shape
-  /// is written.
+  /// In ascending order of time, with straight lines in between; the first at time 0, the place of
+  /// the shape as it is specified.
   std::vector<TimedPlace> points = {TimedPlace{}};
   Eigen::Vector2d onward = Eigen::Vector2d::Zero();  ///< velocity after the last point, m/s
 };
 
 /// All pairs are (along, across) the way.
 struct ObstacleMotion {
-  /// At least one; which one it goes is drawn when a drive begins.
+  /// At least one; the one taken is drawn at the start of a drive.
   std::vector<IntendedWay> ways = {IntendedWay{}};
   Eigen::Vector2d start_deviation = Eigen::Vector2d::Zero();  ///< from the way at time 0, m
-  /// Of the velocity from the way's, once and for all times, m/s, and for how long it remembers
-  /// what that was, s.
+  /// Standard deviation of the velocity from the way's, the same at all times, m/s, and the time
+  /// constant `memory` of its correlation, s.
   Eigen::Vector2d speed_deviation = Eigen::Vector2d::Zero();
   double memory = 1.0;  ///< > 0
-  /// Time in which 63 % of a deviation from the way is made good, s; 0: never.
+  /// Time constant in which 63 % of a deviation from the way is corrected, s; 0: never.
   Eigen::Vector2d returns_in = Eigen::Vector2d::Zero();
-  /// Of a random walk about the way, m²/s.
+  /// Covariance rate of a random walk about the way, m²/s.
   Eigen::Vector2d covariance_rate = Eigen::Vector2d::Zero();
-  double seen_deviation = 0.0;  ///< of each coordinate of a measurement of its place, m
-  bool turns = false;           ///< whether it turns with its way
-  /// It waits while the vehicle is nearer than this to it, m. No forecast knows that it does.
+  double seen_deviation = 0.0;  ///< standard deviation of each coordinate of a measured place, m
+  bool turns = false;           ///< whether the shape turns with the way
+  /// The obstacle waits while the vehicle is nearer than this, m. Forecasts do not account for it.
   double yields = 0.0;
 
-  /// Whether it is where its only way says.
+  /// Whether there is a single way and no deviation from it.
   [[nodiscard]] bool is_certain() const;
 };
 
-/// Straight on for ever at `velocity`, m/s, from `from`, m.
+/// Straight from `from`, m, at `velocity`, m/s, without end.
 [[nodiscard]] IntendedWay steady_way(const Eigen::Vector2d& velocity,
                                      const Eigen::Vector2d& from = Eigen::Vector2d::Zero());
 
@@ -60,21 +60,21 @@ struct ObstacleMotion {
 /// the last.
 [[nodiscard]] IntendedWay way_along(const Eigen::Matrix2Xd& places, double speed);
 
-/// Throws std::invalid_argument, saying what is expected, on no ways, probabilities that are not
-/// above 0 or do not add up to 1, several ways that are seen exactly or begin apart, times that do
-/// not ascend, places that are reached at more than kFastestWay only, negative deviations and times
-/// of return, a memory that is not above 0, and numbers that are not finite.
+/// Throws std::invalid_argument, stating what is expected, on missing ways, probabilities that are
+/// not above 0 or do not add up to 1, several ways that begin apart or are measured exactly, times
+/// that do not ascend, speeds above kFastestWay, negative deviations, times of return or distances
+/// to wait at, a memory that is not above 0, and numbers that are not finite.
 void check_obstacle_motion(const ObstacleMotion& motion);
 
-/// What moves faster from one place to the next jumps, m/s.
+/// Moving faster than this between places counts as a jump, m/s.
 inline constexpr double kFastestWay = 100.0;
 
-/// How far the way is at a time ≥ 0 from its first place.
+/// The offset of the way at a time ≥ 0 from its first place, m.
 [[nodiscard]] Eigen::Vector2d intended_offset(const IntendedWay& way, double time);
 
-/// The direction of the way at a time ≥ 0, rad in (−π, π]: of the line between where it is half a
-/// second before and after, so that it turns in a second at a corner. Where it stands still, the
-/// direction before; 0 where it never moves.
+/// The direction of the way at a time ≥ 0, rad in (−π, π]: that of the chord from half a second
+/// before to half a second after, so that a turn at a corner takes one second. During a standstill,
+/// the previous direction, or the first one if there is none; 0 if the way never moves.
 [[nodiscard]] double way_direction(const IntendedWay& way, double time);
 
 /// A deviation from the way in one direction, and its rate, over one period:
@@ -89,7 +89,8 @@ struct DeviationStep {
   double walk_noise = 0.0;
 };
 
-/// `direction`: 0 along the way, 1 across. The rate's deviation stays speed_deviation.
+/// `direction`: 0 along the way, 1 across. The standard deviation of the rate stays at
+/// speed_deviation.
 [[nodiscard]] DeviationStep deviation_step(const ObstacleMotion& motion, int direction,
                                            double time_step);
 

@@ -1,5 +1,5 @@
-// A drive whose noise is drawn by one seed up to a period, and by others from there on: two drives
-// with the same seeds below a period are the same up to it, and independent after it.
+// A drive whose noise is drawn with one seed up to a period and with others afterwards: two drives
+// with the same seeds before a period are identical up to it, and independent after it.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace qsmpc::models {
 
-/// From a period on, noise is drawn by this seed.
+/// From a period on, noise is drawn with this seed.
 struct NoiseSeed {
   std::uint64_t from = 0;  ///< period
   std::uint64_t seed = 0;
@@ -16,7 +16,7 @@ struct NoiseSeed {
 };
 
 /// The seed of the noise of period `period`: that of the last entry of `seeds` (ascending by
-/// `from`) which begins by then, or `first` where there is none.
+/// `from`) with from ≤ period, or `first` if there is none.
 [[nodiscard]] inline std::uint64_t noise_seed_at(const std::vector<NoiseSeed>& seeds,
                                                  std::uint64_t first, std::uint64_t period) {
   std::uint64_t seed = first;

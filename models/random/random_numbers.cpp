@@ -15,7 +15,7 @@ namespace qsmpc::models {
 namespace {
 
 using Generator = r123::Philox4x64;
-constexpr Eigen::Index kBlock = 4;  // numbers a call of the generator
+constexpr Eigen::Index kBlock = 4;  // numbers per call of the generator
 
 // Eigenvalues this far below zero, relative to the largest, are rounding errors.
 constexpr double kRelativeRounding = 1e-12;

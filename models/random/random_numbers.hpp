@@ -1,6 +1,6 @@
-// Random vectors that depend on nothing but their key: whatever the order of calls or the number of
-// threads, a key gives the same numbers. Counter-based generator: Philox4x64-10 (Salmon, Moraes,
-// Dror, Shaw: "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
+// Random vectors that depend only on their key: a key gives the same numbers for any order of calls
+// and any number of threads. Counter-based generator: Philox4x64-10 (Salmon, Moraes, Dror, Shaw:
+// "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
 //
 //   const GaussianSampler noise(Eigen::VectorXd::Zero(3), covariance);
 //   const Eigen::VectorXd w = noise.sample({.seed = 1, .episode = 7,
@@ -14,24 +14,24 @@
 
 namespace qsmpc::models {
 
-/// What random numbers are for. Values are part of what a seed means: never renumber.
+/// The purpose of random numbers. The values are part of the meaning of a seed: never renumber.
 enum class RandomStream : std::uint64_t {
   kInitialState = 0,
   kDisturbance = 1,
   kInput = 2,       ///< random inputs, as for measuring the mismatch between plant and model
-  kPrediction = 3,  ///< paths of the model, one an episode; step 0 is the initial state
-  kSensor = 4,      ///< what the planner sees less what is
-  kParameters = 5,  ///< parameters of a plant that are drawn
-  kBootstrap = 6,   ///< weights of an episode in the replicates of a sample of episodes
-  kPlanning = 7,    ///< paths that a controller samples, a period an episode
-  kSearch = 8,      ///< the order in which the points of a grid of settings are tried
-  kSplitting = 9,   ///< parents and seeds of paths that are split, a generation an episode
-  // Obstacles that move, each an episode.
-  kObstacleWay = 10,     ///< which way one goes
-  kObstacleStart = 11,   ///< where it is at the beginning, and how fast
-  kObstacleMotion = 12,  ///< what pushes it off its way
-  kObstacleSensor = 13,  ///< what is seen of its place less what is
-  // Controllers that sample; their "episode" is a chunk of samples.
+  kPrediction = 3,  ///< paths of the model, one per episode; step 0 is the initial state
+  kSensor = 4,      ///< what the planner measures minus the true state
+  kParameters = 5,  ///< random parameters of a plant
+  kBootstrap = 6,   ///< weights of an episode in the bootstrap replicates of a sample of episodes
+  kPlanning = 7,    ///< paths that a controller samples, one period per episode
+  kSearch = 8,      ///< the order in which a grid of settings is searched
+  kSplitting = 9,   ///< parents and seeds of split paths, one generation per episode
+  // Moving obstacles, one per episode.
+  kObstacleWay = 10,     ///< which way an obstacle takes
+  kObstacleStart = 11,   ///< its place and velocity at the start
+  kObstacleMotion = 12,  ///< disturbances off its way
+  kObstacleSensor = 13,  ///< its measured minus its true place
+  // Sampling-based controllers; their "episode" is a chunk of samples.
   kSampledInputs = 16,  ///< perturbations of inputs
   kSampledNoise = 17,   ///< process noise of their rollouts
 };
@@ -55,7 +55,7 @@ void standard_normals(const RandomKey& key, std::span<double> out);
 /// Fills `out` with independent words of 64 random bits.
 void random_words(const RandomKey& key, std::span<std::uint64_t> out);
 
-/// N(mean, covariance), its covariance's root computed once.
+/// Samples N(mean, covariance); the root of the covariance is computed once.
 class GaussianSampler {
  public:
   /// mean: n; covariance: n x n, symmetric positive semidefinite up to rounding.

@@ -1,15 +1,15 @@
-// Vectors of doubles for the inner loops, for whichever instruction set is being compiled for.
+// Vectors of doubles for the inner loops, for the instruction set being compiled.
 //
-// A file with such loops is compiled once for each instruction set, by Highway's foreach_target,
-// and the best that the processor has is chosen when the program runs:
+// A file with such loops is compiled once per instruction set, by Highway's foreach_target; the
+// best one that the processor supports is chosen at run time:
 //
 //   #undef HWY_TARGET_INCLUDE
 //   #define HWY_TARGET_INCLUDE "models/dynamics/batch_kernels.cpp"
 //   #include <hwy/foreach_target.h>
 //   #include "models/simd/lanes-inl.hpp"
 //
-// Results do not depend on the choice, bit for bit: there are no fused multiply-adds, and sums are
-// taken in kLanes interleaved parts, however wide the vectors are.
+// Results are bit-identical for every choice: there are no fused multiply-adds, and sums are taken
+// in kLanes interleaved parts, whatever the width of the vectors.
 
 // One inclusion for each instruction set.
 #if defined(QSMPC_SIMD_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
@@ -31,7 +31,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Interleaved parts of a sum, and what loops advance by: the widest vectors of all.
+/// Interleaved parts of a sum, and the stride of the loops: the width of the widest vectors.
 inline constexpr std::size_t kLanes = 8;
 
 using VectorTag = hn::CappedTag<double, kLanes>;
@@ -45,11 +45,11 @@ inline constexpr std::size_t kParts = kLanes / kWidth;
 HWY_INLINE Vector constant(double value) { return hn::Set(VectorTag(), value); }
 HWY_INLINE Vector zeros() { return hn::Zero(VectorTag()); }
 
-/// Eight doubles from or to anywhere, and the same where only `count` of them exist (the others
-/// read as zero and are not written).
+/// Loads or stores a vector at any address; the variants `…_first` do so when only `count` elements
+/// exist (the others read as zero and are not written).
 HWY_INLINE Vector load(const double* from) { return hn::LoadU(VectorTag(), from); }
-// The first `count` elements, the others zero; nothing else is read or written. Only newer
-// instruction sets mask accesses to memory; elsewhere Highway's own functions access whole vectors.
+// The first `count` elements, the others zero; no other memory is accessed. Only newer instruction
+// sets can mask memory accesses; elsewhere Highway's own functions access whole vectors.
 HWY_INLINE Vector load_first(std::size_t count, const double* from) {
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
   return hn::MaskedLoad(hn::FirstN(VectorTag(), count), VectorTag(), from);
@@ -70,9 +70,9 @@ HWY_INLINE void store_first(std::size_t count, Vector value, double* to) {
 #endif
 }
 
-/// Stores those lanes of `value` that are chosen side by side, and returns how many they are; what
-/// follows them, up to kWidth doubles from `to` on, may be overwritten. (Highway's own Compress
-/// copies its table of permutations to the stack each time, where compilers do not see through it.)
+/// Stores the chosen lanes of `value` contiguously and returns their number; the memory after them,
+/// up to kWidth doubles from `to`, may be overwritten. (Highway's own Compress copies its
+/// permutation table to the stack on each call if the compiler does not optimise that away.)
 HWY_INLINE std::size_t store_chosen(Vector value, Mask chosen, double* to) {
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
   _mm512_storeu_pd(to, _mm512_maskz_compress_pd(chosen.raw, value.raw));
@@ -92,8 +92,8 @@ HWY_INLINE std::size_t store_chosen(Vector value, Mask chosen, double* to) {
 }
 
 /// Calls body(i, load, store, part) for every vector of `size` doubles: it covers i … i + kWidth −
-/// 1, and is number `part` of its eight. `load(pointer)` and `store(value, pointer)` take the
-/// address of element i and keep within the size.
+/// 1, and is number `part` within its kLanes doubles. `load(pointer)` and `store(value, pointer)`
+/// take the address of element i and stay within the size.
 template <class Body>
 HWY_INLINE void for_vectors(std::size_t size, const Body& body) {
   std::size_t i = 0;
@@ -156,9 +156,9 @@ HWY_INLINE SineCosine sine_cosine(Vector x) {
   constexpr double kLargestReduced = 1e6;
   constexpr double kTwoOverPi = 0.63661977236758134308;
   constexpr double kHalfPi1 = 1.57079632673412561417e+00;  // 33 bits
-  constexpr double kHalfPi2 = 6.07710050630396597660e-11;  // 33 bits of what is left
+  constexpr double kHalfPi2 = 6.07710050630396597660e-11;  // 33 bits of the remainder
   constexpr double kHalfPi3 = 2.02226624879595063154e-21;  // the rest
-  // Adding it rounds to an integer, which then stands in the lowest bits.
+  // Adding it rounds to an integer, which is then in the lowest bits.
   constexpr double kRounder = 0x1.8p52;
   constexpr double kSine[] = {-1.66666666666666324348e-01, 8.33333333332248946124e-03,
                               -1.98412698298579493134e-04, 2.75573137070700676789e-06,
@@ -175,7 +175,7 @@ HWY_INLINE SineCosine sine_cosine(Vector x) {
                    multiple * constant(kHalfPi3);
   const Vector square = r * r;
   const Vector sine = r + r * square * polynomial(square, kSine);
-  // 1 − r²/2 is rounded; what it loses is added again.
+  // 1 − r²/2 is rounded; the rounding error is added back.
   const Vector half = constant(0.5) * square;
   const Vector one_less = constant(1.0) - half;
   const Vector cosine = one_less + (((constant(1.0) - one_less) - half) +
@@ -200,7 +200,7 @@ HWY_INLINE SineCosine sine_cosine(Vector x) {
       library_sine[lane] = std::sin(angle[lane]);
       library_cosine[lane] = std::cos(angle[lane]);
     }
-    // The others keep theirs: no result depends on what stands beside it in a vector.
+    // The other lanes keep their results: no result depends on its neighbours in a vector.
     result.sine = hn::IfThenElse(large, load(library_sine), result.sine);
     result.cosine = hn::IfThenElse(large, load(library_cosine), result.cosine);
   }

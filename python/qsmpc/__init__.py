@@ -6,12 +6,12 @@
     episode = qsmpc.run(scenario, seed=1)
     print(episode.outcome, episode.clearances.min())
 
-A controller of your own is an object with ``act(situation)``, or a function:
+A custom controller is an object with ``act(situation)``, or a function:
 
     episode = qsmpc.run(scenario, controller=lambda now: [-0.5 * now.observation[2]])
 
-Arrays have the samples as rows: ``episode.states`` is (steps + 1) × n. What is wrong with a file or a
-value is an `InputError` with one line.
+Arrays have samples as rows: ``episode.states`` is (steps + 1) × n. Errors in a file or a value
+raise `InputError` with a one-line message.
 """
 
 from qsmpc._native.core import InputError, IoError, ObstaclePlace, Situation, __version__

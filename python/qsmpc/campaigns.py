@@ -18,7 +18,7 @@ Columns = dict[str, NDArray[Any]]
 
 
 class Store:
-    """What a campaign has driven so far. Each question sees the store as it is then."""
+    """What a campaign has driven so far. Each call sees the store's current state."""
 
     __slots__ = ("core",)
 
@@ -35,7 +35,7 @@ class Store:
         return self.core.variants
 
     def variant(self, variant: Union[int, str]) -> int:
-        """The number of a variant, by its name or itself. Raises `KeyError`."""
+        """The number of a variant, given its name or number. Raises `KeyError`."""
         names = [each["name"] for each in self.variants]
         if isinstance(variant, str):
             if variant not in names:
@@ -64,16 +64,16 @@ class Store:
         return self.core.periods(self.variant(variant))
 
     def episode(self, variant: Union[int, str], seed: int) -> Episode:
-        """The trace of an episode that the campaign kept. Raises `InputError` where it did not."""
+        """The trace of an episode. Raises `InputError` if the campaign did not keep it."""
         number = self.variant(variant)
         return read(os.path.join(self.folder, "episodes", str(number), str(seed)))
 
     def statistics(self) -> dict[str, Any]:
-        """What ``campaign.json`` says, of what is there now."""
+        """The content of ``campaign.json``, for the current state."""
         return json.loads(self.core.statistics_json())
 
     def status(self) -> dict[str, Any]:
-        """How far it is, and who works on it."""
+        """How far it has come, and who is working on it."""
         return json.loads(self.core.status_json())
 
     def verify(self) -> None:
@@ -94,11 +94,12 @@ def campaign(
     retry_faults: bool = False,
     on_progress: Optional[Callable[[int, int], None]] = None,
 ) -> Store:
-    """Drives what the folder ``out`` lacks of a campaign, and writes what ``qsmpc campaign`` does.
+    """Drives the episodes of a campaign that the folder ``out`` lacks, and writes the files of
+    ``qsmpc campaign``.
 
-    ``jobs``: episodes at the same time; 0 for one a core. ``on_progress`` is told how many episodes
-    of how many are done. Ctrl-C keeps what is done: the same call goes on. Raises `InputError` and
-    `IoError`.
+    ``jobs``: simultaneous episodes; 0 for one per core. ``on_progress`` is called with the number
+    of finished episodes and their total. Ctrl-C keeps finished episodes; the same call then
+    continues. Raises `InputError` and `IoError`.
     """
     return Store(
         core.run_campaign(
@@ -108,10 +109,10 @@ def campaign(
 
 
 def open_campaign(folder: Path) -> Store:
-    """The store of a campaign, also while it is driven. Raises `InputError` where there is none."""
+    """The store of a campaign, even while it is running. Raises `InputError` if there is none."""
     return Store(core.Store(os.fspath(folder)))
 
 
 def campaigns() -> dict[str, str]:
-    """The shipped campaigns, each with a line that says what it is."""
+    """The shipped campaigns, each with a one-line description."""
     return dict(core.campaigns())

@@ -15,7 +15,7 @@ from qsmpc.scenarios import Path, Scenario, as_scenario
 
 
 class Comparison:
-    """Plants beside the model, in closed loop, period by period and along a plan."""
+    """Plants compared with the model: in closed loop, period by period and along a plan."""
 
     __slots__ = ("core", "_numbers")
 
@@ -29,7 +29,7 @@ class Comparison:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """What ``comparison.json`` says, under its keys."""
+        """The content of ``comparison.json``, by key."""
         if self._numbers is None:
             self._numbers = json.loads(self.core.to_json())
         return self._numbers
@@ -42,7 +42,7 @@ class Comparison:
         return self.core.residuals(plant)
 
     def save(self, folder: Path) -> None:
-        """Writes what ``qsmpc compare`` leaves: numbers, data, figures, page."""
+        """Writes the files of ``qsmpc compare``: numbers, data, figures, page."""
         self.core.save(os.fspath(folder))
 
     def __str__(self) -> str:
@@ -59,7 +59,8 @@ def compare(
 ) -> Comparison:
     """Compares plants, by their names or files; by default ``analytic`` and the scenario's own.
 
-    ``threads``: at most; 0 for all cores. No result depends on it. Raises `InputError`.
+    ``threads``: at most this many; 0 for all cores. Results do not depend on it. Raises
+    `InputError`.
     """
     names = [plants] if isinstance(plants, str) else list(plants)
     return Comparison(core.compare(as_scenario(scenario).core, names, episodes, paths, threads))

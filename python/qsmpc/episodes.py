@@ -1,4 +1,4 @@
-"""Episodes: driven, read, written, shown."""
+"""Episodes: driving, reading, writing, showing."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ Floats = NDArray[np.float64]
 
 
 class Controller(Protocol):
-    """What may drive. A function of the situation will do, too.
+    """The interface of controllers. A function of the situation works as well.
 
-    ``act`` answers an array of inputs. With an attribute ``plans = True`` it answers a plan instead,
-    which is certified: an object or a dict with ``inputs`` (stages × m), and, where it has them,
-    ``gains`` (stages × m × n), ``status`` and ``evaluations``; what `Planner` returns is one.
-    ``reset(seed)``, where it is there, is called before each drive.
+    ``act`` returns an array of inputs. With an attribute ``plans = True`` it returns a plan
+    instead, which is certified: an object or a dict with ``inputs`` (stages × m) and, optionally,
+    ``gains`` (stages × m × n), ``status`` and ``evaluations``, such as that returned by `Planner`.
+    ``reset(seed)``, if defined, is called before each drive.
     """
 
     def act(self, situation: core.Situation) -> Any: ...
@@ -33,10 +33,10 @@ def _size(size: Optional[tuple[int, int]]) -> Optional[tuple[int, int]]:
 
 
 class Episode:
-    """The record of one drive, as arrays with a control period as a row.
+    """The record of one drive, as arrays with one row per control period.
 
-    ``states``, ``times`` and ``clearances`` have a row more than there are ``steps``: the state in
-    which the drive ended. What a controller does not have is empty, or not a number.
+    ``states``, ``times`` and ``clearances`` have one row more than ``steps``: the final state of
+    the drive. What a controller does not provide is empty or NaN.
     """
 
     __slots__ = ("core", "_summary")
@@ -60,12 +60,12 @@ class Episode:
 
     @property
     def fault(self) -> str:
-        """What broke; empty without a fault."""
+        """The cause of a fault; empty without one."""
         return self.core.fault
 
     @property
     def controller_log(self) -> str:
-        """What a controller in a process of its own wrote to its standard error."""
+        """What an external controller wrote to its standard error."""
         return self.core.controller_log
 
     @property
@@ -74,19 +74,19 @@ class Episode:
 
     @property
     def duration(self) -> float:
-        """s, to the end of the last control period."""
+        """Time to the end of the last control period, s."""
         return self.core.duration
 
     @property
     def summary(self) -> dict[str, Any]:
-        """The numbers of ``summary.json``, under its keys."""
+        """The numbers of ``summary.json``, by key."""
         if self._summary is None:
             self._summary = json.loads(self.core.summary_json())
         return self._summary
 
     @property
     def times(self) -> Floats:
-        """s, of ``states``."""
+        """Times of ``states``, s."""
         return self.core.times
 
     @property
@@ -96,27 +96,27 @@ class Episode:
 
     @property
     def clearances(self) -> Floats:
-        """Distances of these states to the unsafe set, steps + 1; at most 0 where it is unsafe."""
+        """Distances of these states to the unsafe set, steps + 1; at most 0 for unsafe states."""
         return self.core.clearances
 
     @property
     def observations(self) -> Floats:
-        """What the controller saw of the states, steps × n."""
+        """The states as observed by the controller, steps × n."""
         return self.core.observations
 
     @property
     def inputs(self) -> Floats:
-        """Inputs that were applied, steps × m."""
+        """Applied inputs, steps × m."""
         return self.core.inputs
 
     @property
     def disturbances(self) -> Floats:
-        """What was added to the state at the end of each period, steps × n."""
+        """The noise added to the state at the end of each period, steps × n."""
         return self.core.disturbances
 
     @property
     def residuals(self) -> Floats:
-        """What neither the model nor the disturbance explains of the next state, periods × n."""
+        """The part of the next state that model and disturbance do not explain, periods × n."""
         return self.core.residuals
 
     @property
@@ -131,7 +131,7 @@ class Episode:
 
     @property
     def stages(self) -> int:
-        """Stages of each plan; 0 where the controller makes none."""
+        """Stages of each plan; 0 if the controller makes none."""
         return self.core.stages
 
     @property
@@ -151,12 +151,12 @@ class Episode:
 
     @property
     def plan_costs(self) -> dict[str, Floats]:
-        """Expected costs of the plans by part, steps each."""
+        """Expected costs of the plans by part; each has length steps."""
         return self.core.plan_costs
 
     @property
     def statuses(self) -> list[str]:
-        """How the solver ended, for each step."""
+        """The solver's status at each step."""
         return self.core.statuses
 
     @property
@@ -166,16 +166,17 @@ class Episode:
     def particles(self, step: int, stage: int) -> tuple[Floats, Floats]:
         """Locations (points × n) and weights (points) of a stage of the plan of a step.
 
-        Raises `IndexError` where there are none.
+        Raises `IndexError` if there are none.
         """
         return self.core.particles(step, stage)
 
     @property
     def certificates(self) -> dict[str, Floats]:
-        """Upper bounds of the probability to be unsafe, steps × stages (1 without plans).
+        """Upper bounds of the probability of being unsafe, steps × stages (1 without plans).
 
-        ``value`` is the least of ``c1`` … ``c4`` and, where it was worked out, ``c5``; ``thesis`` is the published value, and no bound.
-        They are bounds unless ``scenario.no_bound`` says why not.
+        ``value`` is the least of ``c1`` … ``c4`` and, if computed, ``c5``; ``thesis`` is the
+        published value, which is not a bound. The others are bounds unless ``scenario.no_bound``
+        says why not.
         """
         return self.core.certificates
 
@@ -195,7 +196,7 @@ class Episode:
         return self.core.motion
 
     def save(self, folder: Path) -> None:
-        """Writes what ``qsmpc run`` leaves, but the video: trace, summary, scenario and page."""
+        """Writes the files of ``qsmpc run`` except the video: trace, summary, scenario and page."""
         self.core.save(os.fspath(folder))
 
     def video(
@@ -207,8 +208,8 @@ class Episode:
         fps: Optional[int] = None,
         speed: float = 1.0,
     ) -> None:
-        """Writes a video; without settings as the scenario has them. MP4, WebM, GIF or WebP, by the
-        ending of the path."""
+        """Writes a video, by default with the scenario's settings. The format (MP4, WebM, GIF or
+        WebP) follows from the path's extension."""
         self.core.write_video(os.fspath(path), camera, _size(size), fps, float(speed))
 
     def still(
@@ -223,7 +224,7 @@ class Episode:
         self.core.write_still(os.fspath(path), float(time), camera, _size(size))
 
     def page(self) -> str:
-        """The report as one page of HTML that needs nothing else."""
+        """The report as one self-contained HTML page."""
         return self.core.page()
 
     def figures(self, folder: Path) -> list[str]:
@@ -257,12 +258,12 @@ def run(
     out: Optional[Path] = None,
     on_step: Optional[Callable[[int, float], None]] = None,
 ) -> Episode:
-    """Drives one episode, with the scenario's controller or with one of your own.
+    """Drives one episode with the scenario's controller or a custom one.
 
     With ``out`` the trace is written there step by step and the other files of ``qsmpc run`` at the
-    end; Ctrl-C leaves what was driven, and is raised then. ``on_step`` is told how many steps are
-    done, and the time (s). An exception in a controller ends the drive as a fault of the
-    controller. Raises `InputError` and `IoError`.
+    end; after Ctrl-C they hold what was driven, and KeyboardInterrupt is raised. ``on_step`` is
+    called with the number of finished steps and the time (s). An exception in a controller ends the
+    drive as a fault of the controller. Raises `InputError` and `IoError`.
     """
     scenario = as_scenario(scenario)
     return Episode(

@@ -1,4 +1,4 @@
-"""Episodes as notebooks show them."""
+"""Display of episodes in notebooks."""
 
 from __future__ import annotations
 

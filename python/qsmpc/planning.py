@@ -1,4 +1,4 @@
-"""Plans from any belief, and certificates of anybody's plans, without a plant."""
+"""Plans from any belief, and certificates of any plans, without a plant."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from qsmpc._native import core
 from qsmpc.scenarios import Path, Scenario, as_scenario
 
 Floats = NDArray[np.float64]
-_UNKNOWN = 1_000_000  # periods left, where that is not known
+_UNKNOWN = 1_000_000  # periods left, if unknown
 
 
 def _moment(
@@ -46,13 +46,13 @@ def _moment(
 
 
 class Plan:
-    """What a controller has decided, and what is certified of it."""
+    """A controller's decision with its certificates."""
 
     __slots__ = ("core", "no_bound")
 
     def __init__(self, plan: core.Plan, no_bound: str = "") -> None:
         self.core = plan
-        #: Why the certificates are no upper bounds; empty where they are.
+        #: Why the certificates are not upper bounds; empty if they are.
         self.no_bound = no_bound
 
     @property
@@ -62,22 +62,22 @@ class Plan:
 
     @property
     def inputs(self) -> Floats:
-        """Nominal inputs, stages × m; empty where the controller plans nothing."""
+        """Nominal inputs, stages × m; empty if the controller plans nothing."""
         return self.core.inputs
 
     @property
     def states(self) -> Floats:
-        """The path of the model under them from the belief's mean, (stages + 1) × n."""
+        """The model's path under these inputs from the belief's mean, (stages + 1) × n."""
         return self.core.states
 
     @property
     def gains(self) -> Floats:
-        """How inputs answer to the state's distance from that path, stages × m × n."""
+        """Feedback gains of the inputs on the state's deviation from that path, stages × m × n."""
         return self.core.gains
 
     @property
     def status(self) -> str:
-        """How the solver ended; empty without one."""
+        """The solver's status; empty without a solver."""
         return self.core.status
 
     @property
@@ -86,28 +86,28 @@ class Plan:
 
     @property
     def fallback(self) -> bool:
-        """Whether nothing usable came out, so that the plan before goes on."""
+        """Whether no usable plan was found, so that the previous plan is continued."""
         return self.core.fallback
 
     @property
     def believed(self) -> float:
-        """The controller's own estimate of the probability that the next state is unsafe, no bound;
-        not a number where it has none."""
+        """The controller's own estimate of the probability that the next state is unsafe, not a
+        bound; NaN if it has none."""
         return self.core.believed
 
     @property
     def costs(self) -> dict[str, float]:
-        """The expected cost by part; not a number where the controller has none."""
+        """The expected cost by part; NaN if the controller has none."""
         return self.core.costs
 
     @property
     def certificates(self) -> dict[str, Floats]:
-        """Upper bounds of the probability to be unsafe, a stage each, as in `Episode`."""
+        """Upper bounds of the probability of being unsafe, one per stage, as in `Episode`."""
         return self.core.certificates
 
     @property
     def horizon_bound(self) -> float:
-        """Upper bound of the probability to be unsafe at any stage."""
+        """Upper bound of the probability of being unsafe at any stage."""
         return self.core.horizon_bound
 
     @property
@@ -117,7 +117,7 @@ class Plan:
 
     @property
     def particle_stages(self) -> int:
-        """Stages with particles, stage 0 with them; 0 where there are none."""
+        """Number of stages with particles, including stage 0; 0 if there are none."""
         return self.core.particle_stages
 
     def particles(self, stage: int) -> tuple[Floats, Floats]:
@@ -138,14 +138,14 @@ class Plan:
 
 
 class Planner:
-    """The controller of a scenario, to be asked at any belief, e.g. in a loop of your own.
+    """The controller of a scenario, to be called at any belief, e.g. in a custom loop.
 
         planner = qsmpc.Planner("dubins_obstacles")
         plan = planner.decide(mean=[0, 0, 0], covariance=[0.01, 0.01, 0.001])
         plan.input, plan.horizon_bound
 
-    It remembers its last plan and starts from it: `reset` before another drive. It is for one thread
-    at a time. It is itself a controller for `run`, with plans.
+    It remembers its last plan and starts from it: call `reset` before another drive. Use it from
+    one thread at a time. It is itself a controller for `run`, with plans.
     """
 
     plans = True
@@ -176,12 +176,12 @@ class Planner:
         deadline: float = math.inf,
         waypoints_passed: Optional[int] = None,
     ) -> Plan:
-        """Plans in a situation, or from a belief with ``mean`` (n) and ``covariance`` (n × n, or its
-        diagonal), the scenario's initial ones by default.
+        """Plans in a situation, or from a belief with ``mean`` (n) and ``covariance`` (n × n, or
+        its diagonal), by default those of the scenario's initial state.
 
-        ``observation`` is what is seen of the state now, the mean by default; ``deadline`` (s from
-        now) is when the best so far is wanted; ``waypoints_passed``, of a scenario that has some, says
-        which is next, the first by default. Raises `ValueError`.
+        ``observation`` is the observed current state, by default the mean; ``deadline`` (s from
+        now) is when the best plan so far is returned; ``waypoints_passed``, for a scenario with
+        waypoints, says which is next, by default the first. Raises `ValueError`.
         """
         moment = _moment(
             self.scenario,
@@ -198,7 +198,7 @@ class Planner:
 
 
 class Certifier:
-    """Certifies inputs and plans, whoever made them, for a scenario's model and unsafe set."""
+    """Certifies inputs and plans from any source for a scenario's model and unsafe set."""
 
     def __init__(self, scenario: Scenario | Path) -> None:
         self.scenario = as_scenario(scenario)
@@ -214,10 +214,10 @@ class Certifier:
         observation: Optional[ArrayLike] = None,
         period: int = 0,
     ) -> Plan:
-        """Certifies every stage of the policy u = sat(v + K (x − x̄)) with ``inputs`` v (stages × m)
-        and ``gains`` K (stages × m × n; none: open loop) from a belief as in `Planner.decide`.
+        """Certifies every stage of the policy u = sat(v + K (x − x̄)) with ``inputs`` v (stages ×
+        m) and ``gains`` K (stages × m × n; none: open loop) from a belief as in `Planner.decide`.
 
-        Raises `ValueError` on wrong sizes and inputs out of their bounds.
+        Raises `ValueError` on wrong sizes and on inputs outside their bounds.
         """
         moment = _moment(
             self.scenario, None, mean, covariance, observation, period, _UNKNOWN, math.inf
@@ -236,8 +236,8 @@ class Certifier:
         observation: Optional[ArrayLike] = None,
         period: int = 0,
     ) -> Plan:
-        """Certifies the next state alone, under ``input`` (m), from what is known of the state once
-        it has been observed. Raises as `plan`."""
+        """Certifies only the next state, under ``input`` (m), from what is known about the state
+        once it has been observed. Raises as `plan`."""
         moment = _moment(
             self.scenario, None, mean, covariance, observation, period, _UNKNOWN, math.inf
         )

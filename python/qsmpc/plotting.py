@@ -1,4 +1,4 @@
-"""Plots with Matplotlib, where it is installed."""
+"""Plots with Matplotlib, if it is installed."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 if TYPE_CHECKING:
     from qsmpc.episodes import Episode
 
-_PARTICLE_STAGES = 4  # of the last plan, evenly
+_PARTICLE_STAGES = 4  # of the last plan, evenly spaced
 
 
 def plot_episode(episode: Episode, axes: Any = None) -> Any:
-    """The drive in the plane with obstacles, target and, where there are any, the particles of the
-    last plan; of a system without a plane, its states over time."""
+    """The drive in the plane with obstacles, target and, if there are any, the particles of the
+    last plan; for a system without a plane, its states over time."""
     import matplotlib.pyplot as pyplot
     from matplotlib.patches import Circle, Polygon, Rectangle
 

@@ -26,29 +26,29 @@ class Prediction:
 
     @property
     def numbers(self) -> dict[str, Any]:
-        """What ``predict.json`` says, under its keys: ``stages``, ``cost``, …"""
+        """The content of ``predict.json``, by key: ``stages``, ``cost``, …"""
         if self._numbers is None:
             self._numbers = json.loads(self.core.to_json())
         return self._numbers
 
     @property
     def inputs(self) -> Floats:
-        """stages × m."""
+        """Nominal inputs, stages × m."""
         return self.core.inputs
 
     @property
     def states(self) -> Floats:
-        """The model's path under them, (stages + 1) × n."""
+        """The model's path under these inputs, (stages + 1) × n."""
         return self.core.states
 
     @property
     def certificates(self) -> Floats:
-        """The least upper bound of the probability to be unsafe, a stage each."""
+        """The smallest upper bound of the probability of being unsafe, one per stage."""
         return np.array([stage["certificate"]["value"] for stage in self.numbers["stages"]], float)
 
     @property
     def horizon_bound(self) -> float:
-        """Upper bound of the probability to be unsafe at any stage."""
+        """Upper bound of the probability of being unsafe at any stage."""
         return self.core.horizon_bound
 
     def particles(self, stage: int) -> tuple[Floats, Floats]:
@@ -56,7 +56,7 @@ class Prediction:
         return self.core.particles(stage)
 
     def save(self, folder: Path) -> None:
-        """Writes what ``qsmpc predict`` leaves."""
+        """Writes the files of ``qsmpc predict``."""
         self.core.save(os.fspath(folder))
 
     def __str__(self) -> str:
@@ -68,8 +68,8 @@ def predict(
 ) -> Prediction:
     """Plans for the scenario's initial belief, or takes ``inputs`` (stages × m), and certifies.
 
-    ``monte_carlo``: paths of the model that are simulated as a check. Raises `ValueError` on inputs
-    of another size or out of their bounds.
+    ``monte_carlo``: number of paths of the model to simulate as a check. Raises `ValueError` on
+    inputs of the wrong size or outside their bounds.
     """
     given = None if inputs is None else np.asarray(inputs, float)
     return Prediction(core.predict(as_scenario(scenario).core, given, monte_carlo))

@@ -1,4 +1,4 @@
-"""Scenarios: loaded, changed, asked."""
+"""Scenarios: loading, changing, querying."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Path = Union[str, "os.PathLike[str]"]
 
 
 def _text(value: Any) -> str:
-    """A value as YAML on one line: JSON is YAML, and a text stands for itself."""
+    """A value as YAML on one line: JSON is valid YAML, and a string is used as it is."""
     if isinstance(value, str):
         return value
     if isinstance(value, os.PathLike):
@@ -33,18 +33,18 @@ def overrides(settings: Settings) -> list[str]:
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """An obstacle that is a shape of the plane of position."""
+    """An obstacle that is a shape in the plane of position."""
 
-    index: int  #: among all obstacles: of ``safe_set.obstacles.INDEX``
+    index: int  #: among all obstacles, as in ``safe_set.obstacles.INDEX``
     kind: str  #: ``disc``, ``ellipse``, ``box``, ``polygon`` or ``half_plane``
-    #: As in the scenario: the keys of the kind, of a polygon its corners.
+    #: As in the scenario: the keys of the kind; for a polygon, its corners.
     values: Any
     #: Corners × 2, counterclockwise, m; arcs as chords, a half-plane as a rectangle of 10 km.
     outline: NDArray[np.float64]
 
 
 class Scenario:
-    """An experiment: system, plant, noise, map, target, controller. It never changes.
+    """An experiment: system, plant, noise, map, target, controller. Immutable.
 
     Made by `load` and `parse`, or from another one by `set`.
     """
@@ -69,12 +69,12 @@ class Scenario:
 
     @property
     def plant(self) -> str:
-        """What is driven: ``analytic`` or ``mujoco``."""
+        """The kind of plant: ``analytic`` or ``mujoco``."""
         return self.core.plant
 
     @property
     def controller(self) -> str:
-        """What drives, e.g. ``quantised``."""
+        """The kind of controller, e.g. ``quantised``."""
         return self.core.controller
 
     @property
@@ -113,12 +113,13 @@ class Scenario:
 
     @property
     def target(self) -> NDArray[np.float64]:
-        """The state to be reached, n."""
+        """The target state, n."""
         return self.core.target
 
     @property
     def target_radius(self) -> float:
-        """How near to it is near enough: m, or over all states without a position in the plane."""
+        """The distance at which the target is reached: m, or in the norm of all states for a system
+        without a position in the plane."""
         return self.core.target_radius
 
     @property
@@ -128,18 +129,18 @@ class Scenario:
 
     @property
     def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Lower and upper bounds of the safe states, n each; infinite where there is none."""
+        """Lower and upper bounds of the safe states, n each; infinite if there is none."""
         return self.core.bounds_lower, self.core.bounds_upper
 
     @property
     def obstacles(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
-        """Lower and upper corners of the boxes that are unsafe, n each; infinite in states that an
-        obstacle does not restrict. Obstacles that are no boxes of states are `shapes`."""
+        """Lower and upper corners of the unsafe boxes, n each; infinite in states that an obstacle
+        does not restrict. Obstacles that are not boxes of states are `shapes`."""
         return self.core.obstacles
 
     @property
     def shapes(self) -> list[Shape]:
-        """The obstacles that are shapes of the plane of position."""
+        """The obstacles that are shapes in the plane of position."""
         outlines = self.core.shape_outlines
         if not outlines:
             return []
@@ -151,17 +152,17 @@ class Scenario:
 
     @property
     def footprint(self) -> NDArray[np.float64]:
-        """The discs that cover the vehicle, discs × 3: radius, and the centre forward and left of
-        the position, m. None of a vehicle that is a point."""
+        """The discs that cover the vehicle, discs × 3: radius, and the centre's offsets forward and
+        left of the position, m. Empty for a point vehicle."""
         return self.core.footprint
 
     @property
     def no_bound(self) -> str:
-        """Why certificates are no upper bounds here; empty where they are."""
+        """Why certificates are not upper bounds here; empty if they are."""
         return self.core.no_bound
 
     def cost(self, state: ArrayLike, input: ArrayLike) -> float:
-        """½ |x − r|²_Q + |u|²_R of one period, of which an episode's cost is the sum."""
+        """½ |x − r|²_Q + |u|²_R of one period; an episode's cost is their sum."""
         return self.core.cost(np.asarray(state, float), np.asarray(input, float))
 
     def set(self, settings: Settings = None, **more: Any) -> Scenario:
@@ -172,11 +173,11 @@ class Scenario:
         return Scenario(self.core.changed(overrides({**(settings or {}), **more})))
 
     def model(self) -> Model:
-        """The planner's model, which can be stepped and linearised."""
+        """The planner's model, to be stepped and linearised."""
         return Model(self)
 
     def warnings(self) -> list[str]:
-        """What is worth knowing before it is driven, a sentence each."""
+        """Warnings before it is driven, one sentence each."""
         return self.core.warnings()
 
     def to_yaml(self) -> str:
@@ -188,7 +189,7 @@ class Scenario:
         return self.core.to_dict()
 
     def __getitem__(self, key: str) -> Any:
-        """The value of a key with dots: ``scenario["controller.horizon"]``."""
+        """The value of a dotted key: ``scenario["controller.horizon"]``."""
         value: Any = self.to_dict()
         for part in key.split("."):
             if not isinstance(value, dict) or part not in value:
@@ -236,17 +237,17 @@ class Model:
 
     @property
     def angles(self) -> list[bool]:
-        """Whether values of a state that are 2π apart mean the same."""
+        """Whether values of a state that are 2π apart are equivalent."""
         return self.core.angles
 
     @property
     def position(self) -> tuple[int, int]:
-        """Indices of the states that are x and y in the plane; −1 where there are none."""
+        """Indices of the states that are x and y in the plane; −1 if there are none."""
         return self.core.position
 
     @property
     def heading(self) -> int:
-        """Index of the state that is the heading; −1 where there is none."""
+        """Index of the state that is the heading; −1 if there is none."""
         return self.core.heading
 
     def step(self, states: ArrayLike, inputs: ArrayLike) -> NDArray[np.float64]:
@@ -270,32 +271,32 @@ def _restored(text: str) -> Scenario:
 def load(path_or_name: Path, settings: Settings = None) -> Scenario:
     """The scenario in a file, or the shipped one of that name, with ``settings`` applied.
 
-    Settings are keys with dots and their values, e.g. ``{"controller.horizon": 8,
-    "target.state": [3, 0, 0]}``; a text is taken as YAML. Raises `InputError`.
+    Settings are dotted keys and their values, e.g. ``{"controller.horizon": 8, "target.state": [3,
+    0, 0]}``; a string is parsed as YAML. Raises `InputError`.
     """
     return Scenario(core.load_scenario(os.fspath(path_or_name), overrides(settings)))
 
 
 def parse(text: str, settings: Settings = None, folder: Path = "") -> Scenario:
-    """The scenario in a text of YAML, whose files are looked up in ``folder``. Raises `InputError`."""
+    """The scenario in a YAML text, whose files are looked up in ``folder``. Raises `InputError`."""
     return Scenario(core.parse_scenario(text, os.fspath(folder), overrides(settings)))
 
 
 def as_scenario(scenario: Scenario | Path) -> Scenario:
-    """A scenario, or the one that a path or name stands for."""
+    """A scenario, or the one given by a path or name."""
     return scenario if isinstance(scenario, Scenario) else load(scenario)
 
 
 def scenarios() -> dict[str, str]:
-    """The shipped scenarios, each with a line that says what it is."""
+    """The shipped scenarios, each with a one-line description."""
     return dict(core.scenarios())
 
 
 def systems() -> dict[str, str]:
-    """The systems that there are models of."""
+    """The systems that have models."""
     return dict(core.systems())
 
 
 def controllers() -> dict[str, str]:
-    """The program's own controllers, for ``controller.kind``."""
+    """The built-in controllers, for ``controller.kind``."""
     return dict(core.controllers())

@@ -1,4 +1,4 @@
-"""A controller in Python as a process of its own, for the command line and for campaigns."""
+"""A Python controller as a separate process, for the command line and for campaigns."""
 
 from __future__ import annotations
 
@@ -43,10 +43,11 @@ def _situation(message: dict[str, Any]) -> SimpleNamespace:
 
 
 def serve(make: Callable[[dict[str, Any]], Any]) -> None:
-    """Answers qsmpc on standard input and output until it has no more questions.
+    """Answers qsmpc on standard input and output until it has no more requests.
 
-    ``make`` is told the scenario (docs/controllers.md has its keys) and returns a controller as for
-    `run`: an object with ``act(situation)``, or a function. A program of it is
+    ``make`` is called with the scenario (docs/controllers.md lists its keys) and returns a
+    controller as for `run`: an object with ``act(situation)``, or a function. Such a program is,
+    for example,
 
         import qsmpc
 
@@ -57,7 +58,7 @@ def serve(make: Callable[[dict[str, Any]], Any]) -> None:
         if __name__ == "__main__":
             qsmpc.serve(Straight)
 
-    and is driven with ``controller: {kind: external, command: [python3, straight.py]}``. What the
+    and is used with ``controller: {kind: external, command: [python3, straight.py]}``. What the
     controller prints goes to standard error, which is kept in ``controller.log``.
     """
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")

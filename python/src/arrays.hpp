@@ -1,5 +1,5 @@
-// Between the library's matrices, which have a sample a column, and NumPy's arrays, which have one
-// a row.
+// Conversion between the library's matrices, with samples as columns, and NumPy's arrays, with
+// samples as rows.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 template <class Number = double>
 using Array = nanobind::ndarray<nanobind::numpy, Number>;
 
-/// An array of this shape that owns `values`, which has as many.
+/// An array of shape `shape` that owns `values`, whose size must match.
 template <class Number>
 [[nodiscard]] Array<Number> array_of(std::vector<Number> values,
                                      std::initializer_list<std::size_t> shape) {

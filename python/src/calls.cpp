@@ -11,10 +11,10 @@ namespace {
 
 namespace nb = nanobind;
 
-// Python's own handler, which makes a KeyboardInterrupt of the signal.
+// Python's own handler, which turns the signal into a KeyboardInterrupt.
 void (*python_handler)(int) = nullptr;
 
-// Calls may be nested, a controller in Python within a drive, and several threads may make them.
+// Calls may be nested (a Python controller within a drive) and come from several threads.
 std::atomic<int> scopes = 0;
 
 extern "C" void note_and_hand_on(int number) {
@@ -34,7 +34,8 @@ InterruptScope::InterruptScope() {
   if (scopes++ == 0) harness::forget_interrupts();
   if (!is_main_thread()) return;
   if (sigaction(SIGINT, nullptr, &before_) != 0) return;
-  // Whoever ignores or has replaced it wants no KeyboardInterrupt; a nested call has caught it.
+  // If the handler was replaced or SIGINT is ignored, no KeyboardInterrupt is wanted; if it is
+  // ours, an outer call already catches SIGINT.
   if ((before_.sa_flags & SA_SIGINFO) != 0 || before_.sa_handler == SIG_IGN ||
       before_.sa_handler == SIG_DFL || before_.sa_handler == note_and_hand_on) {
     return;

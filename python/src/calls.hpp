@@ -1,4 +1,4 @@
-// Long calls of the library: other Python threads run meanwhile, and Ctrl-C is heard.
+// Long calls of the library: other Python threads run meanwhile, and Ctrl-C is handled.
 #pragma once
 
 #include <csignal>
@@ -12,8 +12,8 @@
 
 namespace qsmpc::python {
 
-/// While it lives, on the thread that Python's signals come to, Ctrl-C is noted as an interrupt of
-/// the library's and handed on to Python, too.
+/// While it lives on the thread that receives Python's signals, Ctrl-C is recorded as an interrupt
+/// of the library and also forwarded to Python.
 class InterruptScope {
  public:
   InterruptScope();
@@ -21,8 +21,8 @@ class InterruptScope {
   InterruptScope(const InterruptScope&) = delete;
   InterruptScope& operator=(const InterruptScope&) = delete;
 
-  /// To be called with the interpreter's lock, once the work has ended: throws what Python makes of
-  /// Ctrl-C, KeyboardInterrupt as a rule, if there was one.
+  /// To be called with the interpreter's lock once the work has ended. If Ctrl-C was pressed,
+  /// throws the exception that Python raises for it, usually KeyboardInterrupt.
   void raise_if_interrupted();
 
  private:
@@ -30,7 +30,8 @@ class InterruptScope {
   struct sigaction before_ = {};
 };
 
-/// work(), without the interpreter's lock. Throws what it throws; KeyboardInterrupt after Ctrl-C.
+/// Calls work() without the interpreter's lock. Its exceptions pass through; throws
+/// KeyboardInterrupt after Ctrl-C.
 template <class Work>
 auto without_lock(const Work& work) {
   InterruptScope interrupts;
@@ -50,15 +51,15 @@ auto without_lock(const Work& work) {
   }
 }
 
-/// Throws InputError where `count` drives of `scenario` at the same time need more memory than
-/// there is, before it is asked for.
+/// Throws InputError if `count` simultaneous drives of `scenario` need more memory than there is,
+/// before any is allocated.
 void refuse_beyond_memory(const harness::Scenario& scenario, int count = 1);
 
 /// str(value). To be called with the interpreter's lock.
 [[nodiscard]] std::string text_of(const nanobind::handle& value);
 
-/// "ValueError: …", of the exception that `error` holds; notes an interrupt if it is
-/// KeyboardInterrupt, and throws Interrupted then. To be called with the interpreter's lock.
+/// "ValueError: …" for the exception that `error` holds. If that is KeyboardInterrupt, records an
+/// interrupt and throws Interrupted. To be called with the interpreter's lock.
 [[nodiscard]] std::string words_of(nanobind::python_error& error);
 
 }  // namespace qsmpc::python

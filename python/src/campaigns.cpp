@@ -1,4 +1,4 @@
-// Campaigns: planned, driven, and their stores as arrays.
+// Campaigns: planning, driving, and their stores as arrays.
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -36,7 +36,7 @@ namespace {
 namespace nb = nanobind;
 using nb::literals::operator""_a;
 
-/// A column of a table, of numbers or of texts.
+/// The columns of a table, by name: numbers, integers and texts.
 struct Columns {
   std::map<std::string, std::vector<double>> numbers;
   std::map<std::string, std::vector<std::int64_t>> whole;
@@ -85,7 +85,7 @@ nb::dict as_arrays(Columns columns) {
   return arrays;
 }
 
-/// A campaign's store, of which each call sees the state of its own time.
+/// A campaign's store. Each call sees the store's current state.
 class Store {
  public:
   explicit Store(std::string folder) : folder_(std::move(folder)) { (void)reader(); }
@@ -153,8 +153,8 @@ class Store {
   std::string folder_;
 };
 
-/// Drives what the folder lacks and writes what `qsmpc campaign` leaves. Ctrl-C lets episodes that
-/// have begun end, and a second one gives them up; what is done is kept.
+/// Drives the episodes that the folder lacks and writes the files of `qsmpc campaign`. Ctrl-C lets
+/// running episodes finish, and a second one abandons them; finished ones are kept.
 Store run_campaign(const std::string& campaign_file, const std::string& folder, int jobs,
                    bool update, bool retry_faults, const nb::object& on_progress) {
   harness::CampaignOptions options{

@@ -1,4 +1,4 @@
-// What `qsmpc compare` computes.
+// The results of `qsmpc compare`.
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -48,7 +48,7 @@ Comparison compare(const harness::Scenario& scenario, const std::vector<std::str
   });
 }
 
-/// The files that `qsmpc compare` leaves.
+/// Writes the files of `qsmpc compare`.
 void save(const Comparison& comparison, const std::string& folder) {
   without_lock([&] {
     harness::make_output_folder(folder);

@@ -25,7 +25,7 @@ namespace {
 namespace nb = nanobind;
 using controller::Situation;
 
-/// What a controller is told, its own copy.
+/// The controller's own copy of the situation.
 struct ToldSituation {
   Eigen::Index period = 0;
   double time = 0.0;
@@ -34,8 +34,8 @@ struct ToldSituation {
   Eigen::MatrixXd belief_covariance;
   Eigen::Index periods_left = 0;
   double deadline = std::numeric_limits<double>::infinity();
-  std::optional<double> progress{};                    // in waypoints
-  std::vector<controller::PlacesByStage> obstacles{};  // that move
+  std::optional<double> progress{};                    // number of waypoints passed
+  std::vector<controller::PlacesByStage> obstacles{};  // moving ones
 };
 
 ToldSituation told(const Situation& now) {
@@ -58,14 +58,14 @@ ToldSituation told(const Situation& now) {
   return situation;
 }
 
-/// Numbers of any array or nested list, as NumPy understands it.
+/// Numbers from any array or nested list that NumPy accepts.
 nb::ndarray<nb::numpy, const double, nb::c_contig> numbers(const nb::handle& value,
                                                            std::size_t dimensions,
                                                            const char* what) {
   const nb::object numpy = nb::module_::import_("numpy");
   nb::object array = numpy.attr("ascontiguousarray")(value, numpy.attr("float64"));
   auto typed = nb::cast<nb::ndarray<nb::numpy, const double, nb::c_contig>>(array);
-  // A single input may come as a number, where an array of one is meant.
+  // A single input may be given as a number in place of an array of one.
   if (typed.ndim() == dimensions) return typed;
   throw harness::WrongAnswer{
       std::string(what) + " with " + std::to_string(typed.ndim()) + " dimensions",
@@ -118,7 +118,7 @@ harness::ControllerAnswer plan_answer(const nb::handle& plan) {
   return answer;
 }
 
-/// An array is the input; `{"input": …}`, `{"plan": …}` and a plan's own object are as they say.
+/// An answer is an array (the input), `{"input": …}`, `{"plan": …}`, or a plan object.
 harness::ControllerAnswer answer_of(const nb::object& value, bool plans) {
   if (nb::isinstance<nb::dict>(value)) {
     const nb::object plan = value.attr("get")("plan");
@@ -137,7 +137,7 @@ harness::ControllerAnswer answer_of(const nb::object& value, bool plans) {
                              plans ? "a plan: its inputs, a row a stage" : "an array of inputs"};
 }
 
-/// Holds an object of Python, and gives it back under the interpreter's lock.
+/// Holds a Python object, and releases it under the interpreter's lock.
 std::shared_ptr<nb::object> kept(nb::object object) {
   return {new nb::object(std::move(object)), [](nb::object* held) {
             const nb::gil_scoped_acquire lock;
@@ -145,7 +145,7 @@ std::shared_ptr<nb::object> kept(nb::object object) {
           }};
 }
 
-/// Calls `work` with the lock; what Python raises is a std::runtime_error with its words.
+/// Calls `work` with the lock; Python exceptions become std::runtime_error with their message.
 template <class Work>
 auto asked(const Work& work) {
   const nb::gil_scoped_acquire lock;

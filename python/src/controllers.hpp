@@ -1,4 +1,4 @@
-// Controllers that are objects of Python.
+// Controllers that are Python objects.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -7,9 +7,10 @@
 
 namespace qsmpc::python {
 
-/// What asks `object`: its `act(situation)`, or itself where it has none; `reset(seed)` before each
-/// drive, where it has one; `plans`, whether answers are plans. Throws TypeError where it cannot be
-/// called. To be made, and destroyed, with the interpreter's lock.
+/// A controller that calls `object`: its `act(situation)`, or the object itself if it has none. It
+/// also calls `reset(seed)` before each drive, if there is one; the attribute `plans` says whether
+/// answers are plans. Throws TypeError if `object` cannot be called. To be created and destroyed
+/// with the interpreter's lock.
 [[nodiscard]] harness::ControllerObject controller_object(const nanobind::object& object);
 
 }  // namespace qsmpc::python

@@ -1,4 +1,4 @@
-// Episodes that Python moves on period by period, one or many side by side, and pictures of them.
+// Episodes that Python advances period by period, one or many in parallel, and pictures of them.
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -31,10 +31,10 @@ namespace nb = nanobind;
 using nb::literals::operator""_a;
 using harness::Scenario;
 
-/// What a period brought.
+/// The result of a period.
 struct Period {
   double cost = 0.0;               ///< of the period, see harness::period_cost
-  double certified = kNotANumber;  ///< that its end is unsafe, at most
+  double certified = kNotANumber;  ///< upper bound of the probability that its end is unsafe
   double clearance = kNotANumber;  ///< of the state at its end
 };
 
@@ -62,19 +62,19 @@ class OpenDrive {
 
   [[nodiscard]] double clearance() const { return drive().clearance(); }
 
-  /// What is seen of the state.
+  /// The observation of the state.
   [[nodiscard]] const Eigen::VectorXd& observation() const {
     return drive().situation().observation;
   }
 
-  /// Nothing while the episode goes on.
+  /// The outcome; nothing while the episode is running.
   [[nodiscard]] std::optional<std::string> outcome() const {
     if (!drive_.outcome()) return std::nullopt;
     return harness::outcome_name(*drive_.outcome());
   }
 
   [[nodiscard]] const Scenario& scenario() const { return *scenario_; }
-  /// Throws std::invalid_argument where no episode has begun.
+  /// Throws std::invalid_argument if no episode has begun.
   [[nodiscard]] const harness::Drive& drive() const {
     if (!has_begun_) throw std::invalid_argument("no episode has begun: reset it first");
     return drive_;
@@ -99,10 +99,11 @@ class DriveBatch {
   DriveBatch(const DriveBatch&) = delete;
   DriveBatch& operator=(const DriveBatch&) = delete;
 
-  /// inputs: count x input_dim. seeds: of drives that begin anew instead; -1 for all others.
-  /// Returns observations (count x state_dim), costs, certified, clearances (nan of those that have
-  /// begun, or that were over, but for their clearance), and outcomes (empty while a drive goes
-  /// on).
+  /// inputs: count x input_dim. seeds: of drives that restart instead of stepping; -1 for all
+  /// others.
+  /// Returns observations (count x state_dim), costs, certified, clearances, and outcomes (empty
+  /// while a drive is running). For drives that have just begun or were already over, costs are 0
+  /// and certified is NaN.
   auto step(const RowMatrix& inputs, const std::vector<std::int64_t>& seeds, bool certify) {
     const auto count = static_cast<Eigen::Index>(drives_.size());
     if (inputs.rows() != count || std::ssize(seeds) != count) {
@@ -142,7 +143,7 @@ class DriveBatch {
   std::vector<std::unique_ptr<OpenDrive>> drives_;
 };
 
-/// Draws where a drive is. One thread makes and uses it.
+/// Draws the current state of a drive. Created and used on one thread.
 class DrivePicture {
  public:
   DrivePicture(int width, int height, std::string camera)
@@ -156,7 +157,7 @@ class DrivePicture {
       renderer_ = std::make_unique<render::Renderer>(pictures.options(), pictures.scenes());
     }
     std::vector<render::Frame> frames = pictures.at(pictures.duration());
-    if (!drive.drive().outcome()) {  // there is no end to be told
+    if (!drive.drive().outcome()) {  // the drive has not ended: no outcome to show
       frames.front().banner.clear();
       frames.front().alarm = false;
     }

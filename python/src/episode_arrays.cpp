@@ -25,7 +25,7 @@ using nb::literals::operator""_a;
 using harness::StepRecord;
 using harness::Trace;
 
-/// steps x n, of a vector of each step; nan where a step has none.
+/// A vector of each step as steps x n; NaN where a step has none.
 template <class Value>
 RowMatrix by_step(const Trace& trace, Eigen::Index width, const Value& value) {
   RowMatrix rows = RowMatrix::Constant(std::ssize(trace.steps), width, kNotANumber);
@@ -36,7 +36,7 @@ RowMatrix by_step(const Trace& trace, Eigen::Index width, const Value& value) {
   return rows;
 }
 
-/// A number of each step.
+/// A number of each step, as a vector.
 template <class Value>
 Eigen::VectorXd each_step(const Trace& trace, const Value& value) {
   Eigen::VectorXd numbers(std::ssize(trace.steps));
@@ -46,7 +46,7 @@ Eigen::VectorXd each_step(const Trace& trace, const Value& value) {
   return numbers;
 }
 
-/// steps x rows x cols, of a matrix of each step, whose columns become rows.
+/// A matrix of each step as steps x rows x cols; its columns become rows.
 template <class Value>
 Array<> matrices(const Trace& trace, Eigen::Index rows, Eigen::Index cols, const Value& value) {
   const auto size = static_cast<std::size_t>(rows * cols);
@@ -97,7 +97,7 @@ std::pair<RowMatrix, Eigen::VectorXd> particles_of(const Episode& episode, std::
   return {as_rows(measure.locations), measure.weights};
 }
 
-/// steps x stages, of each figure by its key, and of the value in force under "value".
+/// steps x stages for each figure by its key, and for the value in force under "value".
 std::map<std::string, RowMatrix> certificates_of(const Episode& episode) {
   const Trace& trace = episode.trace();
   const Eigen::Index stages = std::max(episode.view().parts().stages, 1);
@@ -154,7 +154,8 @@ std::map<std::string, Eigen::VectorXd> timings_of(const Episode& episode) {
   };
 }
 
-/// Times (samples) and generalised positions (samples x nq) of the vehicle between the instants.
+/// Times (samples) and generalised positions (samples x nq) of the vehicle between control
+/// instants.
 std::pair<Eigen::VectorXd, RowMatrix> motion_of(const Episode& episode) {
   const auto& motion = episode.trace().motion;
   const Eigen::Index width = motion.empty() ? 0 : std::ssize(motion.front().qpos);

@@ -1,4 +1,4 @@
-// Episodes: driven, read, written, drawn, and as arrays.
+// Episodes: driving, reading, writing, drawing, and arrays.
 #include "python/src/episodes.hpp"
 
 #include <cstdint>
@@ -48,7 +48,7 @@ std::vector<std::string> statuses_of(const Episode& episode) {
   return statuses;
 }
 
-/// The files that `qsmpc run` leaves, but the video.
+/// Writes the files of `qsmpc run` except the video.
 void write_files(const Episode& episode, const std::string& folder) {
   harness::write_file(folder + "/" + harness::kScenarioFile, episode.trace().scenario_text);
   harness::discard_artefacts(folder);
@@ -112,7 +112,7 @@ std::unique_ptr<Episode> run(const Scenario& scenario, const nb::object& control
       on_step(done, time);
     };
   }
-  // Files are there before Ctrl-C is told.
+  // The files are written before Ctrl-C is raised.
   return without_lock([&] {
     harness::try_plant(scenario);
     auto episode = std::make_unique<Episode>(drive(scenario, settings, object, report));

@@ -1,4 +1,4 @@
-// A trace with what is worked out of it, as Python holds it.
+// A trace and the quantities derived from it, as Python holds it.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ class Episode {
   harness::EpisodeView view_;
 };
 
-/// Adds what of an episode is arrays to its class.
+/// Adds the array members of an episode to its class.
 void add_episode_arrays(nanobind::class_<Episode>& type);
 
 }  // namespace qsmpc::python

@@ -1,4 +1,4 @@
-// The library's errors as exceptions of Python.
+// The library's errors as Python exceptions.
 #include "harness/errors.hpp"
 
 #include <exception>
@@ -14,7 +14,7 @@ namespace {
 
 namespace nb = nanobind;
 
-// Live as long as the module, which is never unloaded.
+// They live as long as the module, which is never unloaded.
 PyObject* input_error = nullptr;
 PyObject* io_error = nullptr;
 
@@ -45,7 +45,7 @@ void translate(const std::exception_ptr& pointer, void* /*unused*/) {
   } catch (const harness::IoError& error) {
     PyErr_SetString(io_error, error.what());
   } catch (const harness::Interrupted&) {
-    // Where Python has seen the signal, its own handler says what it becomes.
+    // If Python has received the signal, its own handler decides which exception it becomes.
     if (PyErr_CheckSignals() == 0) PyErr_SetNone(PyExc_KeyboardInterrupt);
   }
 }

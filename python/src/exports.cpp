@@ -1,4 +1,4 @@
-// What files for other viewers are made with, besides an episode's arrays.
+// Data for the files of other viewers, besides an episode's arrays.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,7 +34,7 @@ std::optional<std::tuple<int, int, bool>> axes_of(const Episode& episode) {
   return std::tuple(axes->x, axes->y, axes->is_plane);
 }
 
-/// arcs x 5: centre, radius (m), from, to (rad), in the vehicle's frame.
+/// The body's outline, arcs x 5: centre, radius (m), from, to (rad), in the vehicle's frame.
 RowMatrix outline_of(const harness::Scenario& scenario) {
   const auto arcs = controller::body_outline(scenario.safe_set.body, Eigen::Vector2d::Zero(), 0.0);
   RowMatrix rows(std::ssize(arcs), 5);

@@ -1,5 +1,5 @@
-// The extension module `qsmpc._native.core`: what the package's Python is written on. Arrays have
-// the samples as rows; the library's have them as columns.
+// The extension module `qsmpc._native.core`, on which the package's Python code is built. Arrays
+// have samples as rows; the library's matrices have them as columns.
 #include "python/src/module.hpp"
 
 #include "harness/version.hpp"

@@ -1,4 +1,4 @@
-// What the parts of the Python module share: each adds its classes and functions to the module.
+// The parts of the Python module: each adds its classes and functions to the module.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace qsmpc::python {
 
-/// Names, each with what is said of it.
+/// Names, each with a description.
 using Described = std::vector<std::pair<std::string, std::string>>;
 
 /// Name and unit of each.

@@ -1,4 +1,4 @@
-// Plans from any belief, and certificates of anybody's plans, without a plant.
+// Plans from any belief, and certificates of any plans, without a plant.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -34,15 +34,15 @@ using nb::literals::operator""_a;
 using harness::Scenario;
 using harness::StepRecord;
 
-/// A belief, what is seen, and when.
+/// A belief, the observation, and the time.
 struct Moment {
   controller::Gaussian belief;
   Eigen::VectorXd observation;
   Eigen::Index period = 0;
   Eigen::Index periods_left = 0;
-  double deadline = std::numeric_limits<double>::infinity();  // s from now
+  double deadline = std::numeric_limits<double>::infinity();  // from now, s
   std::optional<int> waypoints_passed{};
-  std::optional<std::vector<controller::PlacesByStage>> obstacles{};  // that move
+  std::optional<std::vector<controller::PlacesByStage>> obstacles{};  // moving ones
 };
 
 controller::Situation situation_of(const Moment& moment, const Scenario& scenario) {
@@ -86,7 +86,7 @@ std::unique_ptr<const Scenario> within_memory(Scenario scenario) {
   return std::make_unique<const Scenario>(std::move(scenario));
 }
 
-/// The controller of a scenario, outside of any drive.
+/// The controller of a scenario, outside any drive.
 class Planner {
  public:
   explicit Planner(Scenario scenario)
@@ -109,7 +109,7 @@ class Planner {
   std::unique_ptr<controller::Controller> controller_;
 };
 
-/// Certifies what others have decided.
+/// Certifies inputs and plans from any source.
 class Certifier {
  public:
   explicit Certifier(Scenario scenario)

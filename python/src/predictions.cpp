@@ -1,4 +1,4 @@
-// What `qsmpc predict` computes.
+// The results of `qsmpc predict`.
 #include <cstdint>
 #include <optional>
 #include <string>

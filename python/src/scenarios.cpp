@@ -1,4 +1,4 @@
-// Scenarios: loaded, changed, described; and the names that are known.
+// Scenarios: loading, changing, describing; and the known names.
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -31,7 +31,8 @@ namespace nb = nanobind;
 using nb::literals::operator""_a;
 using harness::Scenario;
 
-/// The obstacles that are shapes of the plane: their places among all, and their corners, N x 2.
+/// The obstacles that are shapes in the plane: their indices among all obstacles, and their
+/// corners, N x 2.
 std::vector<std::pair<std::size_t, Eigen::MatrixXd>> shape_outlines(const Scenario& scenario) {
   const std::vector<controller::Obstacle>& obstacles = scenario.safe_set.obstacles;
   std::vector<std::pair<std::size_t, Eigen::MatrixXd>> outlines;
@@ -54,13 +55,12 @@ Scenario with_seed(Scenario scenario, std::uint64_t seed) {
   return scenario;
 }
 
-/// A file's text again as a scenario; its files need not be there.
+/// Parses a recorded scenario; its files need not exist.
 Scenario recorded(const std::string& text) {
   return harness::parse_scenario(text, {.files_must_exist = false, .is_recorded = true});
 }
 
-/// A scalar that is not quoted is a number (infinite ones with them), true or false where YAML
-/// takes it for such.
+/// An unquoted scalar is a number (possibly infinite), true or false if YAML reads it as such.
 nb::object scalar_of(const harness::YamlNode& node) {
   if (!node.quoted) {
     if (node.text == "true") return nb::bool_(true);
@@ -91,7 +91,7 @@ nb::object as_dict(const Scenario& scenario) {
   return object_of(harness::parse_yaml(harness::to_yaml(scenario), scenario.name));
 }
 
-/// discs x 3: radius, and the centre forward and left of the position, m.
+/// The footprint, discs x 3: radius, and the centre's offsets forward and left of the position, m.
 RowMatrix footprint_of(const Scenario& scenario) {
   const std::vector<controller::Disc>& discs = scenario.safe_set.body.discs;
   RowMatrix rows(std::ssize(discs), 3);
@@ -155,7 +155,7 @@ void add_scenario_class(nb::module_& module) {
       .def("warnings", &harness::scenario_warnings);
 }
 
-/// The planner's model, as a class that Python calls.
+/// The planner's model, as a Python class.
 class Model {
  public:
   explicit Model(const Scenario& scenario) : dynamics_(harness::model_of(scenario)) {}

@@ -1,5 +1,5 @@
-// Contexts of the two libraries that OpenGL can come from. Included only by offscreen_context.cpp
-// and their own sources.
+// Contexts of the two libraries that can provide OpenGL. Included only by offscreen_context.cpp and
+// the contexts' own sources.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace qsmpc::render {
 
-/// A context that is current on the thread that made it until it is destroyed there.
+/// A context that is current on the thread that created it until it is destroyed there.
 class GlContext {
  public:
   GlContext() = default;
@@ -20,15 +20,15 @@ class GlContext {
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  /// How OpenGL's functions are found.
+  /// The function that looks up OpenGL's functions.
   [[nodiscard]] virtual GlLookup lookup() const = 0;
 };
 
-/// `library`: of dlopen. Throw std::runtime_error when there is no context to be had.
+/// `library`: a handle from dlopen. Both throw std::runtime_error if no context can be created.
 [[nodiscard]] std::unique_ptr<GlContext> make_osmesa_context(void* library);
 [[nodiscard]] std::unique_ptr<GlContext> make_egl_context(void* library);
 
-/// Sets `function` to what `library` has under `name`; throws std::runtime_error if it has not.
+/// Sets `function` to the symbol `name` of `library`; throws std::runtime_error if there is none.
 template <typename Function>
 void find_function(void* library, const char* name, Function& function) {
   function = reinterpret_cast<Function>(dlsym(library, name));

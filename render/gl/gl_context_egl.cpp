@@ -35,13 +35,13 @@ struct EglFunctions {
   }
 };
 
-// Whether `list`, words between blanks and possibly null, holds `word`.
+// Whether `list`, words separated by blanks and possibly null, contains `word`.
 bool holds(const char* list, std::string_view word) {
   const std::string padded = " " + std::string(list == nullptr ? "" : list) + " ";
   return padded.find(" " + std::string(word) + " ") != std::string::npos;
 }
 
-// A display that needs no screen, and how its contexts are.
+// A display without a screen, and the configuration of its contexts.
 struct Display {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLConfig config = nullptr;
@@ -55,7 +55,7 @@ class DisplaySearch {
     extensions_ = functions.query_string(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   }
 
-  // Graphics cards first, then Mesa without a surface, which draws on the CPU where it must.
+  // Graphics cards first, then Mesa without a surface, which draws on the CPU if necessary.
   Display find() {
     if (get_display_ != nullptr && holds(extensions_, "EGL_EXT_platform_device")) {
       for (const EGLDeviceEXT device : cards()) {
@@ -97,7 +97,7 @@ class DisplaySearch {
     return found;
   }
 
-  // Without a config if it cannot draw OpenGL without a surface.
+  // The config is null if the display cannot draw OpenGL without a surface.
   [[nodiscard]] Display opened(EGLenum platform, void* native) const {
     Display found{get_display_(platform, native, nullptr), nullptr};
     if (found.display == EGL_NO_DISPLAY ||
@@ -138,7 +138,7 @@ class EglContext : public GlContext {
   explicit EglContext(void* library)
       : functions_(library), display_(shared_display(functions_).display) {
     const EGLConfig config = shared_display(functions_).config;
-    functions_.bind_api(EGL_OPENGL_API);  // a thread's own choice
+    functions_.bind_api(EGL_OPENGL_API);  // a setting of each thread
     context_ = functions_.create(display_, config, EGL_NO_CONTEXT, nullptr);
     if (context_ == EGL_NO_CONTEXT) {
       throw std::runtime_error("off-screen rendering: EGL cannot make a context");

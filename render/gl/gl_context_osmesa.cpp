@@ -8,7 +8,7 @@
 namespace qsmpc::render {
 namespace {
 
-// MuJoCo draws into a framebuffer object of its own; the context's buffer only has to exist.
+// MuJoCo draws into its own framebuffer object; the context's buffer only has to exist.
 constexpr std::size_t kBufferSide = 16;  // pixels
 constexpr int kDepthBits = 24;
 constexpr int kStencilBits = 8;

@@ -1,10 +1,10 @@
-// OpenGL's functions under their usual names, from the library that was loaded at run time:
+// OpenGL's functions under their usual names, from the library loaded at run time:
 //
 //   #include "render/gl/gl_functions.hpp"
 //   namespace qsmpc { void f() { glBegin(GL_QUADS); … } }
 //
-// Within the namespace qsmpc these names are pointers, which are set when the first off-screen
-// context is made. A function that is missing here does not link: add it to the list.
+// Within the namespace qsmpc these names are pointers that are set when the first off-screen
+// context is created. A function that is missing from the list does not link: add it there.
 #pragma once
 
 #include <GL/gl.h>
@@ -55,11 +55,11 @@ namespace qsmpc::render {
 QSMPC_GL_FUNCTIONS(QSMPC_DECLARE_GL)
 #undef QSMPC_DECLARE_GL
 
-/// A library's way to find a function of OpenGL by its name; null where it has none.
+/// Looks up an OpenGL function of a library by name; returns null if there is none.
 using GlLookup = void (*(*)(const char* name))();
 
-/// Sets the pointers above, once in a process; thread-safe. Throws std::runtime_error, naming the
-/// function, when `lookup` does not find one.
+/// Sets the pointers above, once per process; thread-safe. Throws std::runtime_error, naming the
+/// function, if `lookup` does not find one.
 void load_gl_functions(GlLookup lookup);
 
 }  // namespace qsmpc::render

@@ -35,7 +35,7 @@ State& state() {
 }
 
 // The first of `names` that can be opened, or null. Global, so that MuJoCo finds it; never closed,
-// as contexts of other threads may live.
+// as contexts of other threads may still be in use.
 void* open_first(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (void* const handle = dlopen(name.c_str(), RTLD_NOW | RTLD_GLOBAL)) {

@@ -31,7 +31,7 @@ std::array<unsigned char, 4> bytes_of(const Colour& colour) {
   return {byte_of(colour.red), byte_of(colour.green), byte_of(colour.blue), byte_of(colour.alpha)};
 }
 
-// 1 stands for one of OpenGL's own points, which are squares.
+// 1 means one of OpenGL's own points, which are squares.
 unsigned sides_of(const GlPoint& point, float largest_square) {
   if (point.size <= largest_square) {
     return 1;
@@ -39,7 +39,7 @@ unsigned sides_of(const GlPoint& point, float largest_square) {
   return point.size <= kLargestHexagon ? 6 : kMostSides;
 }
 
-// Corner `side` of a regular polygon about the origin, with the area of the disc of radius 1.
+// Corner `side` of a regular polygon about the origin with the area of the unit disc.
 PlanarPoint corner(unsigned sides, unsigned side) {
   const double step = 2.0 * std::numbers::pi / sides;
   const double radius = std::sqrt(step / std::sin(step));
@@ -51,7 +51,7 @@ class PointBatch {
   explicit PointBatch(const View& view)
       : view_(view), pixel_(2.0 * view.half_height / view.near_plane / view.height) {}
 
-  // Draws `count` points of the same number of sides (of squares: of the same size, too).
+  // Draws `count` points with the same number of sides; squares must also have the same size.
   void draw(const GlPoint* points, std::size_t count, unsigned sides) {
     vertices_.clear();
     corners_.clear();

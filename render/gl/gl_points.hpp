@@ -1,4 +1,4 @@
-// Round points that face the camera, many thousands of them at once.
+// Round points facing the camera, many thousands at once.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace qsmpc::render {
 
-/// A round point of `size` pixels across.
+/// A round point with a diameter of `size` pixels.
 struct GlPoint {
   SpacePoint position{};
   float size = 1.0F;
@@ -16,8 +16,8 @@ struct GlPoint {
 };
 
 /// Draws them in the order given, within a FlatDrawing with the same view. Points of up to 2.5
-/// pixels (4 where there are more than 6,000) are squares, up to 6 pixels hexagons: nobody sees the
-/// difference, and many of them cost a fraction of what discs do.
+/// pixels (4 where there are more than 6,000) are squares, up to 6 pixels hexagons: the difference
+/// is invisible, and many of them cost a fraction of discs.
 void draw_points(const View& view, const std::vector<GlPoint>& points);
 
 }  // namespace qsmpc::render

@@ -12,11 +12,11 @@ namespace {
 
 constexpr int kCircleSides = 64;
 constexpr float kSlopeOffset = 2.0F;
-constexpr float kDepthOffset = 400.0F;  // smallest depth differences: some millimetres
-// Of prisms, some of which stand where the vehicle's file has a shape of its own.
+constexpr float kDepthOffset = 400.0F;  // in units of the depth resolution: a few millimetres
+// Offsets of prisms, some of which coincide with shapes of the vehicle's file.
 constexpr float kBehindSlope = 1.0F;
 constexpr float kBehindDepth = 16.0F;
-// m. The rasteriser may draw anything for a smooth line that has no direction.
+// m. The rasteriser may draw anything for a smooth line without a direction.
 constexpr double kLeastSegment = 1e-6;
 
 // Brightness of a box's faces; the sun shines as in the vehicles' files, towards +x and -y.
@@ -34,7 +34,8 @@ Colour lit(const Colour& colour, float light) {
   return {colour.red * light, colour.green * light, colour.blue * light, colour.alpha};
 }
 
-// Of an upright face that looks along (x, y): between those of a box by the share of each.
+// Brightness of an upright face with normal (x, y): between those of a box, weighted by its
+// components.
 float side_light(double x, double y) {
   const auto east = static_cast<float>(x * x / (x * x + y * y));
   return east * (x > 0.0 ? kEastLight : kWestLight) +
@@ -48,7 +49,7 @@ PlanarPoint on_circle(const PlanarPoint& centre, double radius, int side) {
 
 void upright_face(const PlanarPoint& from, const PlanarPoint& to, double height,
                   const Colour& colour) {
-  // A little darker at the foot, which makes a box stand on the ground instead of floating.
+  // Slightly darker at the foot, so that a box appears to stand on the ground instead of floating.
   constexpr float kFootLight = 0.82F;
   set_colour(lit(colour, kFootLight));
   glVertex3d(from.x, from.y, 0.0);
@@ -271,7 +272,7 @@ void draw_band(const std::vector<ColouredPoint>& edges) { draw_vertices(GL_TRIAN
 void draw_translucent(const std::vector<ColouredPoint>& corners) {
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(kSlopeOffset, kDepthOffset);
-  // Depth alone first: then only the front is blended, once.
+  // Depth only first: then only the front is blended, once.
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   write_depth(true);
   draw_vertices(GL_TRIANGLES, corners);

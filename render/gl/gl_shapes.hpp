@@ -1,4 +1,4 @@
-// Simple shapes drawn with OpenGL into whatever is current; no lighting, colours as given.
+// Simple shapes drawn with OpenGL into the current context; no lighting, colours as given.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace qsmpc::render {
 
-/// Keeps OpenGL's state as it was, and sets up flat drawing with `view` until it is destroyed:
-/// blending and depth test on, lighting and textures off.
+/// Sets up flat drawing with `view` until it is destroyed, then restores OpenGL's state: blending
+/// and depth test on, lighting and textures off.
 class FlatDrawing {
  public:
   explicit FlatDrawing(const View& view);
@@ -19,27 +19,27 @@ class FlatDrawing {
   FlatDrawing& operator=(const FlatDrawing&) = delete;
 };
 
-/// Whether what is drawn next hides what is drawn later behind it.
+/// Sets whether the following shapes hide later ones behind them.
 void write_depth(bool on);
 
-/// Between these two calls a pixel is drawn once only, whatever covers it how often.
+/// Between these two calls each pixel is drawn only once, however often it is covered.
 void begin_single_coverage();
 void end_single_coverage();
 
 /// An upright box from the ground, its sides shaded as if the sun stood in the south-west.
 void draw_box(const PlanarRectangle& area, double height, const Colour& colour);
 
-/// An upright prism from the ground, shaded likewise. Where its surface is that of something drawn
-/// before, that is in front.
+/// An upright prism from the ground, shaded likewise. Where its surface coincides with something
+/// drawn before, the latter is in front.
 void draw_prism(const Prism& prism, double height, const Colour& colour);
 
 /// A convex polygon lying on the ground.
 void draw_polygon(const std::vector<PlanarPoint>& corners, const Colour& colour);
 
-/// A ring lying on the ground; a disc where the inner radius is 0.
+/// A ring lying on the ground; a disc if the inner radius is 0.
 void draw_ring(const PlanarPoint& centre, double inner, double outer, const Colour& colour);
 
-/// The side of an upright cylinder, whose colour goes from `bottom` to `top`.
+/// The side of an upright cylinder, with a colour gradient from `bottom` to `top`.
 void draw_tube(const PlanarPoint& centre, double radius, double height, const Colour& bottom,
                const Colour& top);
 
@@ -54,28 +54,28 @@ void draw_segments(const std::vector<SpacePoint>& ends, double width, const Colo
 void draw_path(const std::vector<PlanarPoint>& points, double height, double width,
                const Colour& colour);
 
-/// A corner of a shape with a colour of its own.
+/// A corner of a shape with its own colour.
 struct ColouredPoint {
   SpacePoint position{};
   Colour colour;
 };
 
-/// One line through all points, `width` pixels wide, its colour going over from point to point.
+/// One line through all points, `width` pixels wide, with interpolated colours.
 void draw_coloured_path(const std::vector<ColouredPoint>& points, double width);
 
-/// A band between the points 0, 2, 4, … and the points 1, 3, 5, …, its colour going over.
+/// A band between the points 0, 2, 4, … and the points 1, 3, 5, …, with interpolated colours.
 void draw_band(const std::vector<ColouredPoint>& edges);
 
-/// Triangles in space, three points each, as a translucent solid: what lies behind its front is not
-/// seen through it, and where it touches something drawn before, that is in front.
+/// Triangles in space, three points each, as a translucent solid: its own parts behind its front
+/// are not visible, and where it touches something drawn before, the latter is in front.
 void draw_translucent(const std::vector<ColouredPoint>& corners);
 
-/// Between these two calls nothing is drawn where the solid of these triangles is seen.
+/// Between these two calls nothing is drawn where the solid of these triangles is visible.
 void begin_beside(const std::vector<ColouredPoint>& corners);
 void end_beside();
 
-/// What is hidden of the solid that `begin_beside` was given, as if what hides it were glass; of
-/// triangles that overlap, the first. Once between those two calls, and the last thing.
+/// Draws the hidden part of the solid given to `begin_beside`, as if seen through glass; of
+/// overlapping triangles, the first. Call it once between those two calls, as the last drawing.
 void draw_hidden(const std::vector<ColouredPoint>& corners);
 
 }  // namespace qsmpc::render

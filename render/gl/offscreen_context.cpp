@@ -26,7 +26,7 @@ struct OffscreenContext::Handle {
 OffscreenContext::OffscreenContext() : handle_(std::make_unique<Handle>()) {
   handle_->context = make_context(loaded_gl());
   load_gl_functions(handle_->context->lookup());
-  // Nothing is returned where calls do not end in the library that the context is of.
+  // Null if calls do not reach the context's library.
   const char* version = gl_string(GL_VERSION);
   const char* renderer = gl_string(GL_RENDERER);
   if (version == nullptr || renderer == nullptr) {

@@ -1,5 +1,5 @@
-// An OpenGL context without a display and without an environment variable: OSMesa, which draws on
-// the CPU, or EGL. Which of them is the process's choice: see gl_library.hpp.
+// An OpenGL context that needs neither a display nor an environment variable: OSMesa, which draws
+// on the CPU, or EGL. The choice is made once per process, see gl_library.hpp.
 #pragma once
 
 #include <memory>
@@ -7,18 +7,18 @@
 
 namespace qsmpc::render {
 
-/// Owns one context, current on the thread that made it from construction to destruction. Use and
-/// destroy it on that thread; each thread may have one of its own.
+/// Owns one context, current on the creating thread from construction to destruction. Use and
+/// destroy it on that thread; each thread may have its own.
 class OffscreenContext {
  public:
-  /// Throws std::runtime_error when there is no library to draw with (naming those looked for), no
-  /// context can be made or OpenGL calls do not reach it.
+  /// Throws std::runtime_error if no library is found (naming those tried), no context can be
+  /// created or OpenGL calls do not reach it.
   OffscreenContext();
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
-  /// The library, and version and renderer in OpenGL's own words, e.g. "osmesa: 4.5 (Compatibility
+  /// The library, with OpenGL's version and renderer strings, e.g. "osmesa: 4.5 (Compatibility
   /// Profile) Mesa, llvmpipe".
   [[nodiscard]] const std::string& description() const;
 

@@ -6,14 +6,14 @@
 namespace qsmpc::render {
 namespace {
 
-// Metres that a shadow is shifted for each metre of height; the sun of the vehicles' own files.
+// Shift of a shadow per metre of height, m; the sun is that of the vehicles' files.
 constexpr PlanarPoint kShadowShift{0.3 / 0.9, -0.36 / 0.9};
 
 double turn(const PlanarPoint& a, const PlanarPoint& b, const PlanarPoint& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Half of Andrew's monotone chain: the points of a sorted range that turn left only.
+// Half of Andrew's monotone chain: the points of a sorted range with left turns only.
 template <typename Iterator>
 std::vector<PlanarPoint> left_chain(Iterator begin, Iterator end) {
   std::vector<PlanarPoint> chain;

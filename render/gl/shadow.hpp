@@ -15,11 +15,11 @@ namespace qsmpc::render {
 /// The same for an upright box of `height` metres.
 [[nodiscard]] std::vector<PlanarPoint> box_shadow(const PlanarRectangle& area, double height);
 
-/// The same for an upright prism of a convex outline.
+/// The same for an upright prism with a convex outline.
 [[nodiscard]] std::vector<PlanarPoint> prism_shadow(const std::vector<PlanarPoint>& outline,
                                                     double height);
 
-/// Counter-clockwise corners of the smallest convex polygon about `points`.
+/// Counter-clockwise corners of the convex hull of `points`.
 [[nodiscard]] std::vector<PlanarPoint> convex_hull(std::vector<PlanarPoint> points);
 
 }  // namespace qsmpc::render

@@ -8,13 +8,13 @@
 namespace qsmpc::render {
 namespace {
 
-constexpr int kLeastContrast = 14;     // of 255: below it nobody sees an edge
-constexpr float kLongestReach = 2.5F;  // pixels along an edge; more would eat the particles
+constexpr int kLeastContrast = 14;     // of 255: lower contrasts are invisible
+constexpr float kLongestReach = 2.5F;  // pixels along an edge; more would erode the particles
 constexpr float kReduction = 1.0F / 8.0F;
 constexpr float kLeastReduction = 255.0F / 128.0F;
-constexpr int kFraction = 256;  // a pixel's side, in the units of places within it
+constexpr int kFraction = 256;  // units of subpixel positions per pixel
 
-// Red, blue and green of a pixel, 16 bits each, so that all are blended by one multiplication.
+// Red, blue and green of a pixel, 16 bits each, so that one multiplication blends all of them.
 using Lanes = std::uint64_t;
 constexpr Lanes kLowBytes = 0x00ff'00ff'00ff'00ffU;
 constexpr Lanes kRounding = 0x0080'0080'0080'0080U;  // half, where 8 bits are dropped
@@ -26,14 +26,14 @@ Lanes lanes_of(std::uint32_t pixel) {
   return (pixel & 0x00ff00ffU) | static_cast<Lanes>(pixel & 0xff00ff00U) << 24U;
 }
 
-// `share` / 256 of b, the rest of a.
+// (1 − share/256) · a + share/256 · b.
 Lanes blend(Lanes a, Lanes b, unsigned share) {
   return ((a * (kFraction - share) + b * share + kRounding) >> 8U) & kLowBytes;
 }
 
 Lanes mean(Lanes a, Lanes b) { return ((a + b + kHalfOfTwo) >> 1U) & kLowBytes; }
 
-// Red and blue count little: the weights are those of the eye, in eighths.
+// Weights of the eye's sensitivity, in eighths.
 int luma_of(int red, int green, int blue) { return (2 * red + 5 * green + blue) / 8; }
 
 int luma_of(Lanes colour) {
@@ -70,8 +70,8 @@ class EdgeFilter {
            static_cast<std::size_t>(x);
   }
 
-  // The contrast of every pixel of a row to its four neighbours; a plain loop, so that it is
-  // vectorised: most pixels are on no edge.
+  // The contrast of every pixel of a row to its four neighbours; a plain loop that the compiler
+  // vectorises, as most pixels are not on an edge.
   void find_edges(int y) {
     const unsigned char* const middle = &workspace_.luma[index(0, y)];
     const unsigned char* const above = middle - width_;
@@ -87,7 +87,7 @@ class EdgeFilter {
     }
   }
 
-  // Eight pixels without an edge are passed over at once.
+  // Skips eight pixels without an edge at once.
   void smooth_row(int y) {
     constexpr int kBlock = 8;
     const unsigned char* const edges = workspace_.edges.data();
@@ -105,8 +105,8 @@ class EdgeFilter {
     }
   }
 
-  // Bilinear between pixel centres, at a place in units of 1 / kFraction; places outside of the
-  // picture are moved to its border.
+  // Bilinear interpolation between pixel centres at a position in units of 1 / kFraction; positions
+  // outside the picture are clamped to its border.
   [[nodiscard]] Lanes sample(int x, int y) const {
     const int cx = std::clamp(x, 0, (width_ - 1) * kFraction - 1);
     const int cy = std::clamp(y, 0, (height_ - 1) * kFraction - 1);
@@ -144,8 +144,8 @@ class EdgeFilter {
     };
     const Lanes near = mean_of_two(1.0F / 6.0F);
     const Lanes wide = mean(near, mean_of_two(0.5F));
-    // The wide mean may have reached across another edge; then it is brighter or darker than all
-    // here.
+    // If the wide mean reached across another edge, it is brighter or darker than the whole
+    // neighbourhood.
     const int low = std::min({nw, ne, sw, se, middle});
     const int high = std::max({nw, ne, sw, se, middle});
     const bool astray = luma_of(wide) < low || luma_of(wide) > high;

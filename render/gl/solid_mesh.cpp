@@ -8,17 +8,17 @@ namespace qsmpc::render {
 namespace {
 
 constexpr int kTurns = 16;  // corners about the third axis
-constexpr int kLayers = 8;  // along it, of an ellipsoid
+constexpr int kLayers = 8;  // along it, for an ellipsoid
 constexpr float kLeastLight = 0.62F;
 
-// Corner `turn` of layer `layer` of the shape with half sides 1.
+// Corner `turn` of layer `layer` of the shape with half side lengths 1.
 SpacePoint unit_corner(SolidShape shape, int layer, int layers, int turn, int turns) {
   const double angle = 2.0 * std::numbers::pi * (turn + 0.5) / turns;
   if (shape == SolidShape::kEllipsoid) {
     const double rise = std::numbers::pi * (static_cast<double>(layer) / layers - 0.5);
     return {std::cos(rise) * std::cos(angle), std::cos(rise) * std::sin(angle), std::sin(rise)};
   }
-  // Two layers in the middle make the side, the outer two shrink to points and make the lids.
+  // The two middle layers form the side; the outer two shrink to points and form the lids.
   const bool lid = layer == 0 || layer == layers;
   const double radius = lid ? 0.0 : shape == SolidShape::kBox ? std::numbers::sqrt2 : 1.0;
   return {radius * std::cos(angle), radius * std::sin(angle), 2 * layer < layers ? -1.0 : 1.0};
@@ -34,7 +34,7 @@ SpacePoint placed(const SolidPlace& place, const SpacePoint& unit) {
   return point;
 }
 
-// z of the unit normal of the triangle; 0 where it has no area.
+// z of the unit normal of the triangle; 0 if it has no area.
 double upward(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c) {
   const SpacePoint u{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
   const SpacePoint v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};

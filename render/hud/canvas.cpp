@@ -37,8 +37,8 @@ void check_drawn(cairo_status_t status) {
   throw std::runtime_error(std::string("head-up display: ") + cairo_status_to_string(status));
 }
 
-// The file is fontconfig's choice. How its letters are drawn is not, since that is the user's taste
-// in screens: the pattern that cairo is given names nothing but the file.
+// fontconfig chooses the file, but not the rendering of its letters, which is a user's screen
+// setting: the pattern given to cairo contains only the file.
 CairoPointer<cairo_font_face_t> installed_face() {
   const CairoPointer<FcPattern> wanted(FcPatternCreate());
   FcPatternAddString(wanted.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>(kFontFamily));
@@ -63,7 +63,7 @@ CairoPointer<cairo_font_face_t> found_face() {
       kBuiltInFamily, CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL));
 }
 
-// cairo keeps fonts and their glyphs: making one again is looking it up.
+// cairo caches fonts and their glyphs: creating one again is a lookup.
 CairoPointer<cairo_scaled_font_t> scaled_font(double size) {
   static const CairoPointer<cairo_font_face_t> face = found_face();
   cairo_matrix_t scale;
@@ -80,7 +80,7 @@ CairoPointer<cairo_scaled_font_t> scaled_font(double size) {
   return font;
 }
 
-// Neither a surrogate nor one of the 66 code points that are no characters; cairo takes neither.
+// Neither a surrogate nor one of the 66 noncharacters; cairo accepts neither.
 bool is_character(std::uint32_t code) {
   const bool surrogate = code >= 0xD800 && code <= 0xDFFF;
   const bool reserved = (code >= 0xFDD0 && code <= 0xFDEF) || (code & 0xFFFEU) == 0xFFFEU;
@@ -89,7 +89,7 @@ bool is_character(std::uint32_t code) {
 
 bool is_control(std::uint32_t code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
 
-// One character after the other, as UTF-8.
+// Calls `action` with one character after the other, as UTF-8.
 template <typename Action>
 void for_each_character(std::string_view text, const Action& action) {
   while (!text.empty()) {
@@ -97,7 +97,7 @@ void for_each_character(std::string_view text, const Action& action) {
     std::array<FcChar8, FC_UTF8_MAX_LEN> bytes{};
     const int taken = FcUtf8ToUcs4(reinterpret_cast<const FcChar8*>(text.data()), &code,
                                    static_cast<int>(std::min<std::size_t>(text.size(), 4)));
-    // A sequence that is longer than need be is no UTF-8, though fontconfig reads it.
+    // Overlong sequences are not valid UTF-8, although fontconfig accepts them.
     const bool valid = taken > 0 && is_character(code) && FcUcs4ToUtf8(code, bytes.data()) == taken;
     const std::uint32_t shown = !valid ? kReplacement : is_control(code) ? ' ' : code;
     const int length = FcUcs4ToUtf8(shown, bytes.data());
@@ -121,7 +121,7 @@ PixelRectangle whole_of(const Image& image) {
 
 }  // namespace
 
-// A copy of the part, as cairo wants pixels: 32 bits each, of which the lower 24 are a colour.
+// A copy of the part in cairo's pixel format: 32 bits each, of which the lower 24 are the colour.
 struct Canvas::Surface {
   Image& image;
   int left = 0;
@@ -172,7 +172,7 @@ struct Canvas::Surface {
     });
     cairo_surface_mark_dirty(pixels);
     cairo_translate(context, -left, -top);
-    // A third of the default's time; at these sizes the letters look the same.
+    // Takes a third of the default's time; at these sizes the letters look the same.
     cairo_set_antialias(context, CAIRO_ANTIALIAS_FAST);
   }
 
@@ -283,7 +283,7 @@ void Canvas::draw_text(const Font& font, std::string_view text, const PixelPoint
       &count, nullptr, nullptr, nullptr);
   const CairoPointer<cairo_glyph_t> glyphs(found);
   check_drawn(status);
-  // As outlines: cairo 1.16 puts the glyphs themselves at whole pixels, at uneven distances.
+  // Drawn as outlines: cairo 1.16 places glyphs at whole pixels, which spaces them unevenly.
   cairo_set_scaled_font(surface_->context, scaled.get());
   cairo_glyph_path(surface_->context, glyphs.get(), count);
   surface_->fill(colour);

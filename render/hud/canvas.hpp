@@ -1,5 +1,5 @@
-// Flat, anti-aliased drawing onto an image: what the head-up display is made of. Pictures are the
-// same from run to run and on any thread; letters depend on the font file that is installed.
+// Flat, anti-aliased drawing onto an image, for the head-up display. Pictures are identical from
+// run to run and on any thread; letters depend on the installed font file.
 //
 //   Canvas canvas(image, {16.0, 16.0, 300.0, 80.0});
 //   canvas.fill_rectangle({16.0, 16.0, 300.0, 80.0}, colour, 8.0);
@@ -18,7 +18,7 @@
 
 namespace qsmpc::render {
 
-/// A place in an image: pixels from its upper left corner, x to the right and y down.
+/// A point in an image: pixels from its upper left corner, x to the right and y down.
 struct PixelPoint {
   double x = 0.0;
   double y = 0.0;
@@ -31,7 +31,7 @@ struct PixelRectangle {
   double height = 0.0;
 };
 
-/// DejaVu Sans at one size; where it is not installed, the font most like it that is; without any
+/// DejaVu Sans at one size; if it is not installed, the most similar installed font; without any
 /// font, built-in letters for ASCII.
 class Font {
  public:
@@ -40,24 +40,23 @@ class Font {
 
   [[nodiscard]] double size() const { return size_; }
 
-  /// Pixels from the start of a line of UTF-8 text to its end. Throws std::runtime_error when
-  /// memory runs out.
+  /// Width of a line of UTF-8 text, pixels. Throws std::runtime_error if memory runs out.
   [[nodiscard]] double width(std::string_view text) const;
 
  private:
   double size_;
 };
 
-/// `text` as UTF-8, cut and marked with "…" where it is wider than `width` pixels. Throws like
+/// `text` (UTF-8), truncated and marked with "…" if it is wider than `width` pixels. Throws like
 /// Font::width.
 [[nodiscard]] std::string fitting(const Font& font, std::string_view text, double width);
 
-/// A part of an image that is drawn on. What lies outside of it is cut off. The image has what was
-/// drawn when the canvas is destroyed; until then nobody else may touch that part. All drawing
-/// blends by the colour's opacity, and throws std::runtime_error when memory runs out.
+/// A part of an image to draw on. Drawing outside it is clipped. The image receives the drawing
+/// when the canvas is destroyed; until then nobody else may access that part. All drawing blends
+/// with the colour's opacity, and throws std::runtime_error if memory runs out.
 class Canvas {
  public:
-  /// The pixels that `area` touches, as far as the image has them.
+  /// The pixels of the image that `area` touches.
   Canvas(Image& image, const PixelRectangle& area);
   /// The whole of `image`.
   explicit Canvas(Image& image);
@@ -65,7 +64,7 @@ class Canvas {
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
 
-  /// `radius` (pixels): of its corners.
+  /// `radius`: of the rounded corners, pixels.
   void fill_rectangle(const PixelRectangle& area, const Colour& colour, double radius = 0.0);
 
   void fill_circle(const PixelPoint& centre, double radius, const Colour& colour);
@@ -74,7 +73,7 @@ class Canvas {
   void draw_graph(const std::vector<PixelPoint>& points, double width, const Colour& colour);
 
   /// One line of UTF-8 text; `pen` is the left end of its baseline, which is moved to a whole row.
-  /// Bytes that are no character's UTF-8 are each drawn as U+FFFD, control characters as spaces.
+  /// Invalid UTF-8 bytes are drawn as U+FFFD each, control characters as spaces.
   void draw_text(const Font& font, std::string_view text, const PixelPoint& pen,
                  const Colour& colour);
 

@@ -21,7 +21,7 @@ constexpr double kBandChart = 150.0;
 
 constexpr double kLeastColumn = 14.5;     // letters wide
 constexpr double kLeastBandChart = 11.0;  // letters wide
-constexpr double kKeptAbout = 1.5;        // letters of the banner, about what it must not cover
+constexpr double kKeptAbout = 1.5;        // letters of the banner, clear about points to keep
 constexpr float kBannerOpacity = 0.86F;
 
 const Colour& chart_colour(std::size_t index) {

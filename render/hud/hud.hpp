@@ -13,8 +13,8 @@ class Hud {
   /// For pictures of this size (pixels).
   Hud(int width, int height);
 
-  /// Draws title, rows and charts into `area`, one below the other. Rows and charts for which there
-  /// is no room are left out, the last ones first.
+  /// Draws title, rows and charts into `area`, one below the other. Rows and charts that do not fit
+  /// are left out, the last ones first.
   void draw_column(const Frame& frame, const PixelRectangle& area, Image& image) const;
 
   /// The same side by side.
@@ -26,24 +26,24 @@ class Hud {
   /// Draws title and rows as one line of text into `area`.
   void draw_line(const Frame& frame, const PixelRectangle& area, Image& image) const;
 
-  /// Draws the banner of `frame` into the upper part of `area`, or into its lower part where it
-  /// would cover fewer of the places `kept`.
+  /// Draws the banner of `frame` into the upper part of `area`, or into its lower part if it covers
+  /// fewer of the points `kept` there.
   void draw_banner(const Frame& frame, const PixelRectangle& area,
                    const std::vector<PixelPoint>& kept, Image& image) const;
 
   /// Draws one line of text at the top of `area`.
   void draw_heading(const std::string& text, const PixelRectangle& area, Image& image) const;
 
-  /// Pixels of a band that holds title, rows and, side by side, all of its charts.
+  /// Height, in pixels, of a band with title, rows and all its charts side by side.
   [[nodiscard]] double band_height() const;
   [[nodiscard]] double legend_height(std::size_t lines) const;
 
-  /// Pixels of a column with title, rows and charts, and of one line of text.
+  /// Width of a column with title, rows and charts, and height of one line of text, pixels.
   [[nodiscard]] double column_width() const;
   [[nodiscard]] double heading_height() const;
 
  private:
-  // Title and rows in `area`; returns the height that they take.
+  // Draws title and rows into `area`; returns their height.
   double draw_rows(const Frame& frame, const PixelRectangle& area, Canvas& canvas) const;
   void draw_row(const HudRow& row, const PixelRectangle& area, Canvas& canvas) const;
 

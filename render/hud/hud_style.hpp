@@ -1,4 +1,4 @@
-// Sizes, fonts and colours that the parts of the head-up display share.
+// Sizes, fonts and colours shared by the parts of the head-up display.
 #pragma once
 
 #include <algorithm>
@@ -38,11 +38,11 @@ inline constexpr Colour kBand{0.075F, 0.095F, 0.13F};
 inline constexpr Colour kChartGround{0.0F, 0.0F, 0.0F, 0.32F};
 inline constexpr Colour kChartLine{1.0F, 1.0F, 1.0F, 0.14F};
 inline constexpr Colour kLimit{1.0F, 1.0F, 1.0F, 0.85F};
-inline constexpr Colour kAlarm{0.72F, 0.10F, 0.07F, 0.92F};  // white text on it is legible
+inline constexpr Colour kAlarm{0.72F, 0.10F, 0.07F, 0.92F};  // legible behind white text
 inline constexpr Colour kWarning{1.0F, 0.58F, 0.38F};
 inline constexpr Colour kText{0.96F, 0.97F, 0.98F};
 inline constexpr Colour kFaintText{0.66F, 0.71F, 0.78F};
-// Okabe and Ito's colours, which any colour vision tells apart.
+// Okabe and Ito's colours, distinguishable with any colour vision.
 inline constexpr std::array<Colour, 5> kCharts{{{0.34F, 0.71F, 0.91F},
                                                 {0.90F, 0.62F, 0.0F},
                                                 {0.40F, 0.80F, 0.65F},

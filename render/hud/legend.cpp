@@ -14,7 +14,7 @@ namespace {
 constexpr int kRampSteps = 24;
 constexpr Colour kWhite{1.0F, 1.0F, 1.0F};
 
-// As it looks on the ground.
+// The tube's colour as it appears on the ground.
 Colour tube_colour(double share) {
   const double probability = std::pow(10.0, std::log10(kLeastRisk) * (1.0 - share));
   return mix(palette::kSafeGround, risk_colour(probability), 0.5F * (1.0F + palette::kTubeOpacity));

@@ -1,4 +1,4 @@
-// What the colours of a picture mean.
+// The legend of a picture's colours.
 #pragma once
 
 #include <string>
@@ -12,10 +12,11 @@ namespace qsmpc::render {
 
 class Legend {
  public:
-  /// Of what `frame` shows, in lines of at most `width` pixels, of which at most `most_lines`.
+  /// The legend of everything that `frame` shows, in at most `most_lines` lines of at most `width`
+  /// pixels.
   Legend(const Frame& frame, const HudStyle& style, double width, std::size_t most_lines);
 
-  /// Pixels of all its lines, without any margin about them.
+  /// Pixels of all its lines, without a margin.
   [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] double height() const;
 

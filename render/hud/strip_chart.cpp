@@ -21,7 +21,7 @@ double title_height(const HudStyle& style) { return 1.6 * style.small.size(); }
 
 struct Plot {
   PixelRectangle ground;
-  double curve_width;  // pixels; the rest is for the range's labels
+  double curve_width;  // pixels; the rest is for the labels of the range
   std::string upper;
   std::string lower;
 };
@@ -32,13 +32,13 @@ Plot plot_of(const StripChart& chart, const PixelRectangle& area, const HudStyle
             .curve_width = 0.0,
             .upper = chart.upper_label.empty() ? short_number(chart.upper) : chart.upper_label,
             .lower = chart.lower_label.empty() ? short_number(chart.lower) : chart.lower_label};
-  // The same for all charts, so that their time axes are in line.
+  // The same for all charts, so that their time axes align.
   const double labels = style.small.width("10⁻⁶ %");
   plot.curve_width = area.width - labels - 3.0 * kInset;
   return plot;
 }
 
-// Where `value` is between the chart's lower (0) and upper (1) edge; NaN stays NaN.
+// Position of `value` between the chart's lower (0) and upper (1) edge; NaN stays NaN.
 double chart_share(const StripChart& chart, double value) {
   const auto measure = [&chart](double v) {
     constexpr double kLeastPositive = 1e-300;
@@ -68,7 +68,7 @@ void draw_limit(const StripChart& chart, const Plot& plot, const HudStyle& style
     const double x = plot.ground.x + 2.0 * kDash * dash;
     canvas.fill_rectangle({x, y - 0.5, std::min(kDash, end - x), 1.0}, hud_colour::kLimit);
   }
-  // At the end of the time axis, where the curve is last, and on a ground of its own.
+  // At the end of the time axis, which the curve reaches last, and on its own background.
   const double letters = style.small.size();
   const double width = style.small.width(chart.limit->label) + 2.0 * kInset;
   const bool above = y - 1.2 * letters > plot.ground.y;
@@ -98,7 +98,7 @@ std::string short_number(double value) {
   if (size == 0.0) return "0";
   const std::string sign = value < 0.0 ? "−" : "";
   if (size >= kLeastPlain * (1.0 - 1e-9) && size < 0.9995 * kLargestPlain) {
-    // Whole numbers have no exponent.
+    // Format {:.3g} would give whole numbers an exponent.
     return sign + (size >= 999.5 ? fmt::format("{:.0f}", size) : fmt::format("{:.3g}", size));
   }
   const std::string digits = fmt::format("{:.1e}", size);

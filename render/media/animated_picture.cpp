@@ -18,7 +18,7 @@ namespace {
 constexpr int kMostColours = 255;  // a GIF has 256; one stays transparent
 constexpr int kFewestColours = 31;
 
-// Pictures as 4 bytes a pixel, in the order that `format` names.
+// Converts pictures to 4 bytes per pixel, in the order of `format`.
 class Converter {
  public:
   Converter(AVPixelFormat format, std::string what) : format_(format), what_(std::move(what)) {}
@@ -42,7 +42,7 @@ class Converter {
   libav::Pointer<SwsContext> scaler_;
 };
 
-// The file, opened when the first picture tells its size.
+// The output file, opened once the first picture gives its size.
 class PictureFile {
  public:
   PictureFile(ByteFile& target, std::string container, std::string what)
@@ -61,9 +61,9 @@ class PictureFile {
     output_->write_header();
   }
 
-  // The frame to be filled and then added.
+  // The frame to fill and then add.
   AVFrame& next() {
-    // An encoder may keep what it was given.
+    // A new frame each time: an encoder may keep the previous one.
     frame_ = libav::allocate_frame(*codec_, what_);
     frame_->pts = frames_++;
     return *frame_;
@@ -127,7 +127,7 @@ void write_gif(const AnimatedPicture& wanted, ByteFile& source, ByteFile& target
     rgba.resize(4 * width * static_cast<std::size_t>(frame.height));
     converter.convert(frame, rgba.data(), 4 * frame.width);
     AVFrame& out = file.next();
-    // Entries that are not used stay 0, which is transparent: what does not change is left out.
+    // Unused entries stay 0, which is transparent: unchanged pixels are left out.
     auto* const entries = reinterpret_cast<std::uint32_t*>(out.data[1]);
     std::fill_n(entries, kMostColours + 1, 0U);
     std::copy(palette.begin(), palette.end(), entries);
@@ -145,7 +145,7 @@ void write_gif(const AnimatedPicture& wanted, ByteFile& source, ByteFile& target
 
 void write_webp(const AnimatedPicture& wanted, ByteFile& source, ByteFile& target,
                 const std::string& what) {
-  // libwebp's own scale is steeper: its 75 looks like 60 of this one.
+  // libwebp's own scale is steeper: its 75 looks like 60 here.
   constexpr double kStretch = 0.625;
   const double quality = kBestQuality - kStretch * (kBestQuality - wanted.quality);
   Converter converter(AV_PIX_FMT_RGB32, what);

@@ -1,4 +1,4 @@
-// Animated pictures, made from a finished video: their colours depend on all of it.
+// Animated pictures, made from a finished video because their colours depend on all of it.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace qsmpc::render {
 
-/// Writes what the video in `source` shows to `target`, `frames_per_second` pictures a second, as a
-/// GIF or WebP that is shown again and again. One picture at a time is held in memory. `quality`:
-/// 0 … 100. Throws what the files throw, else std::runtime_error "WHAT: the library's words".
+/// Writes the video in `source` to `target` as a looping GIF or WebP with `frames_per_second`
+/// pictures per second. Only one picture at a time is held in memory. `quality`: 0 … 100. Throws
+/// what the files throw, otherwise std::runtime_error "WHAT: the library's message".
 struct AnimatedPicture {
   VideoFormat format = VideoFormat::kGif;
   int frames_per_second = 0;

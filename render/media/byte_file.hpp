@@ -1,4 +1,4 @@
-// Where the bytes of a media file are kept: the caller's business, who has folders, names and
+// The storage of a media file's bytes, implemented by the caller, who knows folders, names and
 // disks.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace qsmpc::render {
 
-/// Bytes that can be read and written anywhere. Members throw what they like, e.g. that the disk is
-/// full; whoever writes a video is thrown it.
+/// Bytes with random access for reading and writing. Members may throw anything, e.g. that the disk
+/// is full; the exception reaches the writer of the video.
 class ByteFile {
  public:
   ByteFile() = default;
@@ -17,18 +17,18 @@ class ByteFile {
   ByteFile& operator=(const ByteFile&) = delete;
   virtual ~ByteFile() = default;
 
-  /// Begins anew with no bytes; called before all else.
+  /// Starts again without any bytes; called first.
   virtual void clear() = 0;
 
   /// Number of bytes.
   [[nodiscard]] virtual std::int64_t size() = 0;
 
-  /// Puts `bytes` at `position`, counted in bytes from the beginning, also beyond the end. What is
-  /// written should outlive a process that is killed.
+  /// Writes `bytes` at `position`, in bytes from the beginning; it may be beyond the end. Written
+  /// bytes should survive a killed process.
   virtual void write_at(std::int64_t position, std::span<const std::uint8_t> bytes) = 0;
 
-  /// Fills the beginning of `out` with the bytes from `position` on. Returns their number, 0 only
-  /// at the end.
+  /// Reads bytes from `position` on into the beginning of `out`. Returns their number, 0 only at
+  /// the end.
   virtual std::size_t read_at(std::int64_t position, std::span<std::uint8_t> out) = 0;
 };
 

@@ -32,7 +32,7 @@ ByteStream::ByteStream(ByteFile& file, Use use, std::exception_ptr& error, const
 }
 
 ByteStream::~ByteStream() {
-  av_freep(&context_->buffer);  // which is not always the one that it was given
+  av_freep(&context_->buffer);  // which is not always the original one
   avio_context_free(&context_);
 }
 

@@ -1,4 +1,5 @@
-// A ByteFile as FFmpeg's libraries read or write it. Included only by the .cpp files that encode.
+// Adapts a ByteFile for reading or writing by FFmpeg's libraries. Included only by the .cpp files
+// that encode.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,9 @@ class ByteStream {
  public:
   enum class Use { kRead, kWrite };
 
-  /// Begins at the first byte. What `file` throws cannot pass through the libraries: it is kept in
-  /// `error`, and they are told of a failure. Throws std::runtime_error when memory runs out.
+  /// Starts at the first byte. Exceptions of `file` cannot pass through the libraries: they are
+  /// stored in `error`, and the libraries get an error code. Throws std::runtime_error if memory
+  /// runs out.
   ByteStream(ByteFile& file, Use use, std::exception_ptr& error, const std::string& what);
   ~ByteStream();
   ByteStream(const ByteStream&) = delete;
@@ -28,7 +30,7 @@ class ByteStream {
   static int write(void* stream, std::uint8_t* buffer, int size);
   static std::int64_t seek(void* stream, std::int64_t offset, int whence);
 
-  // What `action` returns, or a code after it threw.
+  // The result of `action`, or an error code if it threw.
   template <typename Action>
   auto guarded(const Action& action) -> decltype(action());
 

@@ -14,7 +14,7 @@ namespace {
 constexpr int kSpeed = 4;            // libimagequant's: 1 slow … 10 coarse
 constexpr int kPatternSide = 4;      // pixels
 constexpr int kSpread = 10;          // of 255, between the extremes of the pattern
-constexpr int kUnseen = 10 * 3 * 3;  // of `distance`: three steps of 255 in each channel
+constexpr int kUnseen = 10 * 3 * 3;  // in units of `distance`: three steps of 255 in each channel
 
 // Ordered dithering (B. E. Bayer, 1973): each value once, neighbours far apart.
 constexpr std::array<int, std::size_t{kPatternSide} * kPatternSide> kPattern{
@@ -44,7 +44,7 @@ void check(liq_error error) {
   }
 }
 
-// With the eye's weights, roughly.
+// Weighted roughly by the eye's sensitivity.
 int distance(const std::array<int, 3>& colour, std::uint32_t entry) {
   const int red = colour[0] - static_cast<int>(entry >> 16U & 0xffU);
   const int green = colour[1] - static_cast<int>(entry >> 8U & 0xffU);

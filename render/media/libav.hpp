@@ -22,11 +22,11 @@ struct Deleter {
 template <typename T>
 using Pointer = std::unique_ptr<T, Deleter>;
 
-/// From now on the libraries print nothing; the last complaint of a thread goes into the text of
-/// the exception that `check` throws there.
+/// Stops the libraries from printing; the last message of a thread goes into the exception that
+/// `check` throws on that thread.
 void silence_log();
 
-/// Throws std::runtime_error "WHAT: the library's or the system's words" if `code` is negative;
+/// Throws std::runtime_error "WHAT: the library's or the system's message" if `code` is negative;
 /// otherwise returns it.
 int check(int code, const std::string& what);
 

@@ -4,7 +4,7 @@
 
 namespace qsmpc::render {
 
-/// Of the FFmpeg whose libraries are linked, e.g. "5.1.6-0+deb12u1".
+/// Version of the linked FFmpeg libraries, e.g. "5.1.6-0+deb12u1".
 [[nodiscard]] std::string libav_version();
 
 }  // namespace qsmpc::render

@@ -20,7 +20,7 @@ class Dictionary {
 
   AVDictionary** get() { return &dictionary_; }
 
-  // What nobody took, which is a mistake in this program or another version of the library.
+  // Throws if an option was not used: a mistake in this program or another version of the library.
   void check_empty(const std::string& what) const {
     const AVDictionaryEntry* const left =
         av_dict_get(dictionary_, "", nullptr, AV_DICT_IGNORE_SUFFIX);
@@ -33,20 +33,20 @@ class Dictionary {
   AVDictionary* dictionary_ = nullptr;
 };
 
-// Throws what a file threw meanwhile, else what `code` says.
+// Rethrows what a file threw meanwhile, otherwise checks `code`.
 int check_stream(int code, const std::exception_ptr& error, const std::string& what) {
   if (error) std::rethrow_exception(error);
   return check(code, what);
 }
 
-// A file of one video stream, being read.
+// An input file with one video stream.
 class InputFile {
  public:
   InputFile(ByteFile& file, std::string what)
       : what_(std::move(what)), io_(file, ByteStream::Use::kRead, error_, what_) {
     format_ = check_allocated(avformat_alloc_context(), what_);
     format_->pb = io_.context();
-    // This frees the format where it fails.
+    // Frees the format on failure.
     check_stream(avformat_open_input(&format_, nullptr, nullptr, nullptr), error_, what_);
     const int code = avformat_find_stream_info(format_, nullptr);
     if (code < 0 || error_) avformat_close_input(&format_);
@@ -58,7 +58,7 @@ class InputFile {
 
   [[nodiscard]] const AVStream& stream() const { return *format_->streams[0]; }
 
-  // Whether there was another packet.
+  // Reads the next packet; returns whether there was one.
   bool read(AVPacket& packet) {
     const int code = av_read_frame(format_, &packet);
     if (code == AVERROR_EOF && !error_) return false;
@@ -86,7 +86,7 @@ Pointer<AVCodecContext> open_encoder(const EncoderSettings& settings, const std:
   codec->pix_fmt = settings.pixels;
   codec->time_base = {1, settings.frames_per_second};
   codec->framerate = {settings.frames_per_second, 1};
-  codec->gop_size = settings.frames_per_second;  // a fragment begins at a key frame: one a second
+  codec->gop_size = settings.frames_per_second;  // a fragment begins at a key frame: one per second
   codec->thread_count = settings.threads;
   if (settings.pixels == AV_PIX_FMT_YUV420P) {
     codec->color_range = AVCOL_RANGE_MPEG;
@@ -201,7 +201,7 @@ void copy_stream(ByteFile& source, ByteFile& target, const Container& container,
   const Pointer<AVPacket> packet(check_allocated(av_packet_alloc(), what));
   std::int64_t begin = AV_NOPTS_VALUE;
   while (input.read(*packet)) {
-    // Fragments cannot begin before 0, so reordered frames made the first one late.
+    // Fragments cannot begin before 0, so reordered frames delayed the first one.
     begin = begin == AV_NOPTS_VALUE ? packet->pts : begin;
     packet->pts -= begin;
     packet->dts -= begin;

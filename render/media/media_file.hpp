@@ -1,4 +1,4 @@
-// Media files of one video stream, by FFmpeg's libraries. Included only by the .cpp files that
+// Media files with one video stream, by FFmpeg's libraries. Included only by the .cpp files that
 // encode.
 #pragma once
 
@@ -15,12 +15,12 @@
 
 namespace qsmpc::render::libav {
 
-/// Names and values of a library's options.
+/// Names and values of library options.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// How pictures are encoded.
 struct EncoderSettings {
-  std::string encoder;  ///< the library's name of it, e.g. "libx264"
+  std::string encoder;  ///< the library's name for it, e.g. "libx264"
   AVPixelFormat pixels = AV_PIX_FMT_YUV420P;
   int width = 0;
   int height = 0;
@@ -29,43 +29,43 @@ struct EncoderSettings {
   Settings options;
 };
 
-/// Throws std::runtime_error "WHAT: …" when there is no such encoder or it refuses an option.
+/// Throws std::runtime_error "WHAT: …" if there is no such encoder or it rejects an option.
 [[nodiscard]] Pointer<AVCodecContext> open_encoder(const EncoderSettings& settings,
                                                    const std::string& what);
 
-/// A frame with memory for `codec`'s pictures.
+/// A frame with memory for a picture of `codec`.
 [[nodiscard]] Pointer<AVFrame> allocate_frame(const AVCodecContext& codec, const std::string& what);
 
-/// A kind of container and its options.
+/// A container format and its options.
 struct Container {
-  std::string name;  ///< the library's name of it, e.g. "mp4"
+  std::string name;  ///< the library's name for it, e.g. "mp4"
   Settings options;
 };
 
-/// A file of one video stream, being written. All members throw what the file throws, else
-/// std::runtime_error "WHAT: the library's words".
+/// An output file with one video stream. All members throw what the file throws, otherwise
+/// std::runtime_error "WHAT: the library's message".
 class OutputFile {
  public:
-  /// Clears `file`, which it uses as long as it lives.
+  /// Clears `file`, which must outlive this object.
   OutputFile(ByteFile& file, const Container& container, std::string what);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// The stream, of which the caller sets everything before `write_header`.
+  /// The stream; the caller sets all its properties before `write_header`.
   [[nodiscard]] AVStream& stream() { return *stream_; }
-  /// What is written reaches the file at once, where it survives the death of this process.
+  /// From now on written data reach the file at once, so that they survive a killed process.
   void flush_always();
   void write_header();
   /// `packet`'s times are in units of `time_base`; the packet is empty afterwards.
   void write(AVPacket& packet, AVRational time_base);
-  /// Sends `frame` to `codec`, or the end of all where it is null, and writes what comes out.
+  /// Sends `frame` to `codec` (null: the end of the stream) and writes the resulting packets.
   void encode(AVCodecContext& codec, const AVFrame* frame);
-  /// Writes the end.
+  /// Writes the trailer.
   void close();
 
  private:
-  // To move an index to the front, the library reads what it wrote.
+  // To move an index to the front, the library reads back its own output.
   static int open_again(AVFormatContext* format, AVIOContext** io, const char* url, int flags,
                         AVDictionary** options);
   static int close_again(AVFormatContext* format, AVIOContext* io);
@@ -82,7 +82,7 @@ class OutputFile {
   Pointer<AVPacket> packet_;
 };
 
-/// Copies the stream of `source` into another file as it is; the first picture's time becomes 0.
+/// Copies the stream of `source` unchanged into another file; the first picture's time becomes 0.
 /// Throws like OutputFile.
 void copy_stream(ByteFile& source, ByteFile& target, const Container& container,
                  const std::string& what);

@@ -1,4 +1,4 @@
-// Kinds of video files, and how good their pictures are.
+// Video file formats and the quality of their pictures.
 #pragma once
 
 #include <optional>
@@ -15,27 +15,27 @@ enum class VideoFormat { kMp4, kWebm, kGif, kWebp };
 inline constexpr int kUsualQuality = 60;
 inline constexpr int kBestQuality = 100;
 
-/// "mp4", "webm", "gif", "webp": what a file's name ends with.
+/// "mp4", "webm", "gif", "webp": the file name extensions.
 [[nodiscard]] const std::vector<std::string>& video_format_names();
 [[nodiscard]] const std::string& video_format_name(VideoFormat format);
 
-/// The inverse; nothing where `name` is none of them.
+/// The inverse; empty if `name` is none of them.
 [[nodiscard]] std::optional<VideoFormat> video_format(const std::string& name);
 
-/// The format that the ending of `path` asks for, in whatever case; nothing where it is none.
+/// The format given by the extension of `path`, in any case; empty if it is unknown.
 [[nodiscard]] std::optional<VideoFormat> video_format_of(const std::string& path);
 
-/// The same; throws std::invalid_argument with the known endings where it is none.
+/// The same; throws std::invalid_argument, listing the known extensions, if it is unknown.
 [[nodiscard]] VideoFormat known_video_format(const std::string& path);
 
 /// The codec of such a file as ffprobe names it, e.g. "h264".
 [[nodiscard]] std::string video_codec(VideoFormat format);
 
-/// More frames a second than this cannot be shown: a GIF's clock counts hundredths, of which
-/// viewers want two.
+/// More frames per second than this cannot be shown: a GIF's clock counts hundredths of a second,
+/// and viewers need at least two per frame.
 [[nodiscard]] int most_frames_per_second(VideoFormat format);
 
-/// Whether it is an animated picture: shown where pictures are, again and again, but large.
+/// Whether it is an animated picture: shown wherever pictures are, looping, but large.
 [[nodiscard]] bool is_animated_picture(VideoFormat format);
 
 }  // namespace qsmpc::render

@@ -12,7 +12,7 @@
 namespace qsmpc::render {
 namespace {
 
-// `best` at quality 100, `worst` at quality 0, and between them in proportion.
+// Interpolates linearly from `worst` at quality 0 to `best` at quality 100.
 int on_scale(int quality, double best, double worst) {
   return static_cast<int>(std::lround(best + (worst - best) * (kBestQuality - quality) / 100.0));
 }
@@ -43,7 +43,7 @@ libav::Settings fragments() {
   return {{"movflags", "+frag_keyframe+empty_moov+default_base_moof"}};
 }
 
-// How the partial file is written, and how a finished one is where it holds the same pictures.
+// Settings of the partial file, and of a finished file that contains the same pictures.
 struct Recipe {
   std::string encoder;
   AVPixelFormat pixels = AV_PIX_FMT_YUV420P;
@@ -57,7 +57,7 @@ Recipe recipe_of(const VideoSettings& options) {
     case VideoFormat::kMp4:
       return {.encoder = "libx264",
               .options = {{"preset", options.preset},
-                          // A quarter of its time for a twentieth of the size.
+                          // No B-frames: a quarter less time for a file a twentieth larger.
                           {"bf", "0"},
                           {"crf", std::to_string(on_scale(options.quality, 1.0, 48.5))}},
               .partial = {"mp4", fragments()},
@@ -66,7 +66,7 @@ Recipe recipe_of(const VideoSettings& options) {
       return {.encoder = "libvpx-vp9",
               .options = {{"deadline", "realtime"},
                           {"cpu-used", "8"},
-                          {"lag-in-frames", "0"},  // a killed process has written what it was given
+                          {"lag-in-frames", "0"},  // a killed process has written its frames
                           {"row-mt", "1"},
                           {"tile-columns", "2"},
                           {"b", "0"},
@@ -104,7 +104,7 @@ struct VideoWriter::Encoder {
         sws_getContext(codec->width, codec->height, AV_PIX_FMT_RGB24, codec->width, codec->height,
                        codec->pix_fmt, SWS_BILINEAR, nullptr, nullptr, nullptr),
         what));
-    constexpr int kUnity = 1 << 16;  // contrast and saturation as they are
+    constexpr int kUnity = 1 << 16;  // contrast and saturation unchanged
     sws_setColorspaceDetails(scaler.get(), sws_getCoefficients(SWS_CS_DEFAULT), 1,
                              sws_getCoefficients(SWS_CS_ITU709), 0, 0, kUnity, kUnity);
   }
@@ -163,7 +163,7 @@ VideoWriter::~VideoWriter() {
   try {
     encoder_->close_partial();
   } catch (const std::exception&) {
-    // What reached the file before stays playable; a destructor has nobody to tell.
+    // Earlier data in the file stay playable; a destructor cannot report the error.
     encoder_->failed = true;
   }
 }

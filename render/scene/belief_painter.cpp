@@ -13,12 +13,12 @@
 namespace qsmpc::render {
 namespace {
 
-constexpr double kNearScale = 150.0;      // pixels a metre, from which on marks have full size
+constexpr double kNearScale = 150.0;      // pixels per metre, from which on marks have full size
 constexpr double kLeastShrinking = 0.55;  // of full size
 constexpr double kPlanWidth = 2.2;        // pixels
 constexpr double kCasingWidth = 5.0;      // pixels
 constexpr double kNodeSize = 8.5;         // pixels
-constexpr double kWholeStageSize = 68.0;  // pixels across, a particle that has all the weight
+constexpr double kWholeStageSize = 68.0;  // pixels across, for a particle with all the weight
 constexpr double kLeastSize = 3.6;        // pixels
 constexpr double kLargestSize = 18.0;     // pixels
 constexpr double kRawSize = 1.9;          // pixels
@@ -27,18 +27,18 @@ constexpr double kTubeEdgeWidth = 3.5;    // pixels
 constexpr std::size_t kMostEllipses = 7;
 constexpr int kEllipseSides = 48;
 constexpr float kParticleOpacity = 0.82F;
-constexpr float kNearOpacity = 0.22F;  // of a particle's, where the vehicle stands
-constexpr double kNearLengths = 1.5;   // of the vehicle, from which on particles are as usual
+constexpr float kNearOpacity = 0.22F;  // of a particle's opacity, at the vehicle
+constexpr double kNearLengths = 1.5;   // vehicle lengths beyond which particles do not fade
 constexpr float kRawOpacity = 0.42F;
 constexpr float kHalfOpacity = 0.95F;
 constexpr double kForecastWidth = 1.6;    // pixels
 constexpr int kForecastSides = 32;        // of an ellipse
-constexpr double kForecastOpacity = 0.9;  // of a way that is certain, now …
+constexpr double kForecastOpacity = 0.9;  // of a certain way, now …
 constexpr double kForecastEnd = 0.3;      // … and at the plan's end
-constexpr double kLeastForecast = 0.12;   // fainter ones would not be seen
+constexpr double kLeastForecast = 0.12;   // fainter ones would be invisible
 constexpr float kMostOpacity = 0.75F;
 
-// Marks shrink with the vehicle, or seen from afar they would cover it; but not below recognition.
+// Marks shrink with the vehicle, as they would cover it when seen from afar, but stay recognisable.
 double mark_scale(const View& view) {
   const double metre =
       kReferenceHeight * view.near_plane / (2.0 * view.half_height * view.distance);  // pixels
@@ -47,7 +47,7 @@ double mark_scale(const View& view) {
 
 SpacePoint on_ground(const PlanarPoint& point) { return {point.x, point.y, kMarkHeight}; }
 
-// Stencilled, so that it is not darker where it overlaps itself in a bend.
+// With a stencil, so that the tube is not darker where it overlaps itself in a bend.
 void paint_tube(const std::vector<TubeSection>& tube) {
   std::vector<ColouredPoint> band;
   for (const TubeSection& section : tube) {
@@ -60,7 +60,7 @@ void paint_tube(const std::vector<TubeSection>& tube) {
   end_single_coverage();
 }
 
-// After the particles, which would hide them.
+// Painted after the particles, which would hide them.
 void paint_tube_edges(const std::vector<TubeSection>& tube, double scale) {
   std::vector<ColouredPoint> left;
   std::vector<ColouredPoint> right;
@@ -83,7 +83,7 @@ void paint_raw_points(const View& view, const std::vector<PlanarPoint>& raw) {
   draw_points(view, points);
 }
 
-// About the vehicle, whose part of the picture it keeps clear.
+// A disc about the vehicle in which marks are fainter.
 struct Clearing {
   PlanarPoint centre;
   double radius;  // m
@@ -129,7 +129,7 @@ void paint_ellipse(const PlanarEllipse& ellipse, const Colour& colour, double wi
   draw_path(outline, kMarkHeight, width, colour);
 }
 
-// Of a long horizon not every stage, or the lines would merge into a surface; the last one always.
+// Skips stages of a long horizon, as the lines would merge into a surface; always paints the last.
 void paint_ellipses(const std::vector<BeliefEllipses>& ellipses, double scale) {
   const std::size_t every = (ellipses.size() + kMostEllipses - 1) / kMostEllipses;
   for (std::size_t i = ellipses.size(); i-- > 0;) {
@@ -140,7 +140,7 @@ void paint_ellipses(const std::vector<BeliefEllipses>& ellipses, double scale) {
   }
 }
 
-// Where the share `at` 0 … 1 of the time from now to the plan's end has passed.
+// Colour after the fraction `at` (0 … 1) of the time from now to the plan's end.
 Colour forecast_colour(double weight, double at) {
   const double fading = kForecastOpacity + at * (kForecastEnd - kForecastOpacity);
   const double opacity = std::max(kLeastForecast, fading * std::sqrt(weight));

@@ -10,7 +10,7 @@
 namespace qsmpc::render {
 namespace {
 
-// A point of the ground and its distance along the line of sight.
+// A point on the ground and its distance along the line of sight.
 struct SightedPoint {
   SpacePoint at{};
   double depth = 0.0;
@@ -21,8 +21,7 @@ SightedPoint sighted(const View& view, const SpacePoint& point) {
   return {point, camera_coordinates(view, point)[2]};
 }
 
-// Where the line from `a` to `b` has `depth`; the same whichever of them comes first, so that
-// neighbours meet.
+// The point of the line from `a` to `b` at `depth`; symmetric in both, so that neighbours meet.
 SightedPoint crossing(SightedPoint a, SightedPoint b, double depth) {
   if (a.depth > b.depth) std::swap(a, b);
   const double share = (depth - a.depth) / (b.depth - a.depth);
@@ -104,7 +103,7 @@ void draw_fading_segments(const View& view, const std::vector<SpacePoint>& ends,
         near = cut;
       }
     }
-    // What has the horizon's colour is not seen before it.
+    // Segments in the colour of the horizon are invisible against it.
     if (near.depth >= fog.end) continue;
     fogged_vertex(near, colour, fog);
     fogged_vertex(far, colour, fog);
@@ -113,18 +112,18 @@ void draw_fading_segments(const View& view, const std::vector<SpacePoint>& ends,
 }
 
 void draw_sky(const View& view, double reach, const Colour& top, const Colour& bottom) {
-  // Rays that fall by `fall` for each metre along the line of sight meet the ground within reach if
-  // they are no longer than that; the picture's corners are the longest.
+  // Rays that fall by at least `fall` per metre along the line of sight meet the ground within
+  // reach; the bound is for the longest rays, through the picture's corners.
   const double across = view.half_width / view.near_plane;
   const double upwards = view.half_height / view.near_plane;
   const double longest = std::hypot(1.0, across, upwards);
   const double fall = view.position[2] * longest / reach;
-  double lower = -1.0;  // of the picture, -1 to 1 from its lower edge
+  double lower = -1.0;  // lower end of the sky, from -1 (the picture's lower edge) to 1
   constexpr double kLevel = 1e-9;
   if (view.up[2] > kLevel) {
     lower = std::clamp((-view.forward[2] - fall) / (view.up[2] * upwards), -1.0, 1.0);
   } else if (-view.forward[2] >= fall) {
-    return;  // looking down, and seeing nothing but ground
+    return;  // looking down: only ground is visible
   }
   const Colour edge = mix(bottom, top, static_cast<float>(0.5 * (lower + 1.0)));
   glMatrixMode(GL_PROJECTION);

@@ -11,7 +11,7 @@
 namespace qsmpc::render {
 namespace {
 
-// In lengths of the half-plane's normal.
+// Depth times the length of the half-plane's normal.
 double depth_in(const PlanarHalfPlane& half_plane, const PlanarPoint& point) {
   return half_plane.normal.x * point.x + half_plane.normal.y * point.y - half_plane.offset;
 }

@@ -17,7 +17,7 @@ namespace qsmpc::render {
 namespace {
 
 constexpr double kObstacleHeight = 0.40;  // m
-constexpr double kEdgeClearance = 0.004;  // m, or lines are half hidden by their own box
+constexpr double kEdgeClearance = 0.004;  // m; otherwise lines are half hidden by their own box
 constexpr double kEdgeWidth = 1.5;        // pixels, of edges and stripes
 constexpr double kWallHeight = 0.10;      // m
 constexpr double kWallThickness = 0.06;   // m
@@ -28,7 +28,7 @@ constexpr double kPostSide = 0.018;       // m
 constexpr double kTubeHeight = 0.35;      // m
 constexpr double kGroundReach = 500.0;    // m beyond the region
 constexpr double kGridReach = 40.0;       // cells beyond the region
-constexpr double kNearEdge = 1.5;         // lengths of all else from its middle
+constexpr double kNearEdge = 1.5;         // extents of everything else, from its middle
 constexpr double kFogBegin = 2.2;         // of the camera's distance
 constexpr double kFogEnd = 9.0;           // of the camera's distance
 constexpr double kPathWidth = 4.0;        // pixels
@@ -42,7 +42,7 @@ PlanarRectangle grown(const PlanarRectangle& area, double margin) {
           area.y_upper + margin};
 }
 
-// 1 m, or more where that would be too many lines.
+// 1 m, or more if that would give too many lines.
 double grid_spacing(const PlanarRectangle& region) {
   const double extent = std::max(region.x_upper - region.x_lower, region.y_upper - region.y_lower);
   constexpr double kMostCells = 80.0;
@@ -94,7 +94,7 @@ std::vector<PlanarRectangle> boundary_walls(const PlanarRectangle& bounds,
   return walls;
 }
 
-// Diagonal lines that fill `area` at `height`, at multiples of `spacing` of x + y.
+// Diagonal lines that fill `area` at `height`, where x + y is a multiple of `spacing`.
 void append_stripes(const PlanarRectangle& area, double height, double spacing,
                     std::vector<SpacePoint>& ends) {
   const double begin = area.x_lower + area.y_lower;
@@ -113,7 +113,7 @@ double stripe_spacing(const PlanarRectangle& region) {
   return std::max(kStripeSpacing, extent / kMostStripes);
 }
 
-// Triangles of three corners each, by their distance from the camera.
+// Triangles of three corners each, sorted by distance from the camera.
 std::vector<ColouredPoint> nearest_first(const std::vector<ColouredPoint>& corners,
                                          const View& view) {
   std::vector<std::pair<double, std::size_t>> order;
@@ -176,7 +176,8 @@ PlanarRectangle world_region(const World& world) {
   for (const PlanarPoint& point : world.waypoints) include(point.x, point.y);
   include(world.target.x - world.target_radius, world.target.y - world.target_radius);
   include(world.target.x + world.target_radius, world.target.y + world.target_radius);
-  // Of a half-plane what of its edge is nearest, unless that is farther away than all else is long.
+  // A half-plane counts with the nearest point of its edge, unless that is more than kNearEdge
+  // extents away.
   const PlanarPoint middle{0.5 * (region.x_lower + region.x_upper),
                            0.5 * (region.y_lower + region.y_upper)};
   const double near =
@@ -197,7 +198,7 @@ ScenePainter::ScenePainter(World world, const PlanarRectangle& region)
       region_(region),
       ground_(grown(region, kGroundReach)),
       walls_(boundary_walls(world_.bounds, region)) {
-  // A side may be infinite: a drawn box ends where the ground does.
+  // A side may be infinite: a drawn box ends at the edge of the ground.
   for (PlanarRectangle& obstacle : world_.obstacles) obstacle = clipped_to(obstacle, ground_);
   for (const PlanarHalfPlane& half_plane : world_.half_planes) {
     const PlanarOutline part = clipped_to(corners_of(ground_), half_plane);
@@ -221,7 +222,7 @@ void ScenePainter::paint_solids(const std::vector<Prism>& moving) const {
   }
 }
 
-// After the ground: smooth lines blend with what is below.
+// Painted after the ground: smooth lines blend with the background.
 void ScenePainter::paint_edges(const std::vector<Prism>& moving, double scale) const {
   for (const PlanarRectangle& o : world_.obstacles) {
     const double z = kObstacleHeight + kEdgeClearance;
@@ -240,7 +241,7 @@ void ScenePainter::paint_edges(const std::vector<Prism>& moving, double scale) c
   }
 }
 
-// What is unsafe is striped: tops of obstacles, and the ground outside of the bounds.
+// Unsafe areas are striped: tops of obstacles, and the ground outside the bounds.
 void ScenePainter::paint_stripes(const std::vector<Prism>& moving, double scale) const {
   std::vector<SpacePoint> ends;
   for (const PlanarRectangle& obstacle : world_.obstacles) {
@@ -257,7 +258,7 @@ void ScenePainter::paint_stripes(const std::vector<Prism>& moving, double scale)
 }
 
 void ScenePainter::paint_ground(const View& view) const {
-  // A camera may stand somewhat outside of the region; there is ground about it all the same.
+  // A camera may be somewhat outside the region; there must be ground about it as well.
   draw_sky(view, 0.5 * kGroundReach, palette::kSky, palette::kHorizon);
   const Fog fog{kFogBegin * view.distance, kFogEnd * view.distance, palette::kHorizon};
   const PlanarRectangle all = grown(region_, kGroundReach);
@@ -308,7 +309,7 @@ void ScenePainter::paint_target_mark() const {
   draw_ring(world_.target, 0.46 * radius, 0.50 * radius, palette::kTarget.with_alpha(0.55F));
 }
 
-/// The next one is drawn as the target is, those after it as rings, and those passed faintly.
+/// The next waypoint is drawn like the target, later ones as rings, and those passed faintly.
 void ScenePainter::paint_waypoints(std::size_t passed) const {
   const double radius = world_.waypoint_radius;
   for (std::size_t i = 0; i < world_.waypoints.size(); ++i) {
@@ -330,8 +331,8 @@ void ScenePainter::paint_target_post() const {
             palette::kTarget.with_alpha(0.0F));
 }
 
-// Marks on the ground are painted in order and without depth of their own, so that none flickers
-// through another; what stands upright has depth and hides them.
+// Marks on the ground are painted in order and without writing depth, so that none flickers through
+// another; upright objects have depth and hide them.
 void ScenePainter::paint(const Frame& frame, const View& view, const VehicleMarks& vehicle) const {
   const FlatDrawing drawing(view);
   const double scale = view.height / kReferenceHeight;
@@ -356,7 +357,7 @@ void ScenePainter::paint(const Frame& frame, const View& view, const VehicleMark
   paint_stripes(moving, scale);
   paint_edges(moving, scale);
   paint_target_post();
-  // The vehicle is neither tinted by the ghost nor hidden by what stands before it.
+  // The vehicle is neither tinted by the ghost nor hidden by objects in front of it.
   begin_beside(vehicle.surface);
   draw_hidden(nearest_first(vehicle.surface, view));
   draw_translucent(vehicle.ghost);

@@ -1,4 +1,4 @@
-// Everything in a picture's space but the vehicle: ground, safe set, target, paths, particles.
+// Everything in the scene except the vehicle: ground, safe set, target, paths, particles.
 #pragma once
 
 #include <vector>
@@ -11,21 +11,21 @@ namespace qsmpc::render {
 
 inline constexpr double kPostHeight = 0.75;  ///< m, of the target's flag
 
-/// The smallest rectangle about what is finite in `world`: bounds, obstacles, target; at least 2 m
-/// wide and high.
+/// The smallest rectangle about everything finite in `world`: bounds, obstacles, target; at least 2
+/// m wide and high.
 [[nodiscard]] PlanarRectangle world_region(const World& world);
 
 class ScenePainter {
  public:
-  /// `region`: where there is something to be seen; the ground's grid reaches well beyond it.
+  /// `region`: the region of interest; the ground's grid extends well beyond it.
   ScenePainter(World world, const PlanarRectangle& region);
 
-  /// Draws into the picture in which the vehicle, and nothing else, has been drawn. Terrain and
-  /// obstacles do not hide the vehicle: where they stand before it, it shines through.
+  /// Draws into a picture in which only the vehicle has been drawn. Terrain and obstacles in front
+  /// of the vehicle do not hide it: it shows through.
   void paint(const Frame& frame, const View& view, const VehicleMarks& vehicle) const;
 
  private:
-  /// Obstacles that move are among what is drawn of them.
+  /// Moving obstacles are drawn as well.
   void paint_solids(const std::vector<Prism>& moving) const;
   void paint_edges(const std::vector<Prism>& moving, double scale) const;
   void paint_stripes(const std::vector<Prism>& moving, double scale) const;

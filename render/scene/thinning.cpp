@@ -21,8 +21,8 @@ ParticleStage thinned(const ParticleStage& stage, std::size_t every) {
     return stage.weights[a] > stage.weights[b];
   });
   ParticleStage kept;
-  // From the middle of the first n, or what is kept would be heavier than what is left out. Of
-  // fewer points one is kept.
+  // Starts in the middle of the first n; otherwise the points kept would be heavier than those left
+  // out. Of fewer points one is kept.
   const std::size_t first = std::min((every - 1) / 2, count - 1);
   for (std::size_t i = first; i < count; i += every) {
     kept.points.push_back(stage.points[order[i]]);

@@ -1,4 +1,4 @@
-// Fewer points where a picture would have too many.
+// Thinning of points where a picture would have too many.
 #pragma once
 
 #include <cstddef>
@@ -7,15 +7,15 @@
 
 namespace qsmpc::render {
 
-/// Points of all overlays together that a frame should have at most: they cost about 10 ms.
+/// Most points that all overlays of a frame should have together; they cost about 10 ms.
 inline constexpr std::size_t kMostOverlayPoints = 18'000;
 
-/// The least n >= 1 for which every n-th of `points` are at most `limit` (at least 1).
+/// The least n >= 1 such that every n-th of `points` points gives at most `limit` (at least 1).
 [[nodiscard]] std::size_t thinning(std::size_t points, std::size_t limit);
 
-/// Every `every`-th point (at least 1) in the order of their weights, the heaviest first and equal
-/// ones as given, so that heavy and light points are thinned alike; their weights are scaled to the
-/// sum they had. The same points every time.
+/// Every `every`-th point (at least 1) in order of weight, the heaviest first and equal ones as
+/// given, so that heavy and light points are thinned alike; the weights are rescaled to the
+/// original sum. The choice is deterministic.
 [[nodiscard]] ParticleStage thinned(const ParticleStage& stage, std::size_t every);
 
 }  // namespace qsmpc::render

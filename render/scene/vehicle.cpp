@@ -20,7 +20,7 @@ namespace qsmpc::render {
 namespace {
 
 constexpr int kSpareGeoms = 64;  // MuJoCo's own decorations
-constexpr int kHiddenGroup = 5;  // not among those that are visible
+constexpr int kHiddenGroup = 5;  // not a visible group
 constexpr double kAxisTolerance = 1e-6;
 
 struct ModelDeleter {
@@ -33,7 +33,7 @@ using ModelPointer = std::unique_ptr<mjModel, ModelDeleter>;
 using DataPointer = std::unique_ptr<mjData, DataDeleter>;
 
 ModelPointer load_model(const std::string& path) {
-  // MuJoCo's XML reader keeps state of its own in the process.
+  // MuJoCo's XML reader has process-wide state.
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   std::array<char, 1000> words{};
@@ -45,7 +45,7 @@ ModelPointer load_model(const std::string& path) {
   return model;
 }
 
-// The ground and the sky are drawn by ScenePainter: MuJoCo's textured ones take most of a frame.
+// ScenePainter draws the ground and the sky: MuJoCo's textured ones take most of a frame's time.
 void prepare_model(mjModel& model, int width, int height) {
   for (int geom = 0; geom < model.ngeom; ++geom) {
     if (model.geom_type[geom] == mjGEOM_PLANE && model.geom_bodyid[geom] == 0) {
@@ -58,8 +58,8 @@ void prepare_model(mjModel& model, int width, int height) {
   model.vis.quality.shadowsize = 0;
 }
 
-// The file's lamps may be any: too bright, none, or about another place. With these a face towards
-// the sun has the colour that the file gives it.
+// The file's lights may be too bright, missing or aimed elsewhere. With these lights a face towards
+// the sun has the colour given by the file.
 void light(mjvScene& scene) {
   constexpr std::array<float, 3> kSun{0.30F, -0.36F, -0.90F};
   constexpr float kAmbient = 0.52F;
@@ -126,8 +126,8 @@ struct Vehicle::Simulator {
   mjrContext context{};
   mjrRect viewport{};
   double length = 0.0;
-  double lift = 0.0;                     // m, that everything is drawn higher
-  std::vector<unsigned char> bottom_up;  // the picture as OpenGL has it, rows from the bottom
+  double lift = 0.0;                     // m, by which everything is raised
+  std::vector<unsigned char> bottom_up;  // OpenGL's picture, rows from the bottom
 
   Simulator(const std::string& path, int width, int height, bool raised)
       : model(load_model(path)), viewport{0, 0, width, height} {
@@ -176,7 +176,7 @@ struct Vehicle::Simulator {
     mjv_freeScene(&scene);
   }
 
-  // What drawing needs of a forward pass, without contacts and dynamics.
+  // The part of a forward pass that drawing needs, without contacts and dynamics.
   void update_positions() {
     mj_kinematics(model.get(), data.get());
     mj_comPos(model.get(), data.get());
@@ -191,7 +191,7 @@ struct Vehicle::Simulator {
     }
   }
 
-  // So that no part reaches the ground however its hinges turn.
+  // Raises the vehicle so that no part reaches the ground for any angles of its hinges.
   void lift_off() {
     constexpr double kGap = 0.05;  // m
     double lowest = 0.0;
@@ -246,10 +246,10 @@ void Vehicle::place(const Frame& frame) {
 
 void Vehicle::draw(const View& view) {
   Simulator& s = *simulator_;
-  mjr_setBuffer(mjFB_OFFSCREEN, &s.context);  // another vehicle may have drawn to its own
+  mjr_setBuffer(mjFB_OFFSCREEN, &s.context);  // another vehicle may have set its own
   mjv_updateScene(s.model.get(), s.data.get(), &s.option, nullptr, &s.camera, mjCAT_ALL, &s.scene);
   light(s.scene);
-  // Our own lens instead of MuJoCo's: what is drawn later has the same.
+  // The view's lens instead of MuJoCo's, as for later drawing.
   for (mjvGLCamera& eye : s.scene.camera) {
     for (std::size_t i = 0; i < 3; ++i) {
       eye.pos[i] = static_cast<float>(view.position[i]);
@@ -306,7 +306,7 @@ std::vector<ColouredPoint> Vehicle::ghost(const Frame& frame) {
   }
   mj_kinematics(&model, &data);
   simulator_->raise(data);
-  constexpr float kNearest = 0.35F;  // of its opacity, where it stands in the vehicle
+  constexpr float kNearest = 0.35F;  // of its opacity, where it coincides with the vehicle
   const double apart = std::hypot(pose.x - frame.pose.x, pose.y - frame.pose.y);
   const auto share = static_cast<float>(length() > 0.0 ? std::min(apart / length(), 1.0) : 1.0);
   const Colour colour =

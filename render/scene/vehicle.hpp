@@ -1,4 +1,4 @@
-// The vehicle's MuJoCo model as something to be drawn: no dynamics.
+// The vehicle's MuJoCo model for drawing, without dynamics.
 #pragma once
 
 #include <memory>
@@ -12,51 +12,51 @@
 
 namespace qsmpc::render {
 
-/// What belongs to a vehicle and is drawn after it.
+/// Marks of a vehicle that are drawn after it.
 struct VehicleMarks {
   double length = 0.0;                            ///< m, see Vehicle::length
   std::vector<std::vector<PlanarPoint>> shadows;  ///< outlines on the ground
-  std::vector<ColouredPoint> surface;  ///< triangles, translucent: what shows where it is hidden
-  std::vector<ColouredPoint> ghost;    ///< triangles as `draw_translucent` takes them
+  std::vector<ColouredPoint> surface;  ///< translucent triangles, shown where it is hidden
+  std::vector<ColouredPoint> ghost;    ///< triangles for `draw_translucent`
 };
 
-/// Needs an OffscreenContext that is current on the calling thread and outlives it.
+/// Needs an OffscreenContext that is current on the calling thread and outlives the object.
 class Vehicle {
  public:
-  /// `mjcf_path`: the model's XML. Planes that belong to its world are not drawn, and its lamps
-  /// are not lit: colours are those of the file. `raised`: see EpisodeScene. Throws
-  /// std::runtime_error with MuJoCo's words when it cannot be loaded or drawn.
+  /// `mjcf_path`: the model's XML. Planes of its world body are not drawn, and its lights are off:
+  /// colours are those of the file. `raised`: see EpisodeScene. Throws std::runtime_error with
+  /// MuJoCo's message if it cannot be loaded or drawn.
   Vehicle(const std::string& mjcf_path, int width, int height, bool raised = false);
   ~Vehicle();
   Vehicle(const Vehicle&) = delete;
   Vehicle& operator=(const Vehicle&) = delete;
 
-  /// Puts the vehicle where `frame` says: at `qpos`, or, if that is empty, at `pose`, which sets x,
-  /// y and yaw of the first free joint (without one: the first joints that slide along x and y and
-  /// turn about z) and leaves the model's own values to all others. Throws std::invalid_argument
-  /// when `qpos` has the wrong size or a value is not finite.
+  /// Places the vehicle according to `frame`: at `qpos` or, if that is empty, at `pose`, which sets
+  /// x, y and yaw of the first free joint (without one: of the first joints that slide along x and
+  /// y and rotate about z); all other coordinates keep the model's defaults. Throws
+  /// std::invalid_argument if `qpos` has the wrong size or a value is not finite.
   void place(const Frame& frame);
 
   /// Clears the picture and draws the vehicle. Later drawing goes to the same picture until
   /// `read_picture`.
   void draw(const View& view);
 
-  /// Waits for all drawing and copies the picture into `out`, of which it sets the size.
+  /// Waits for all drawing to finish and copies the picture into `out`, which is resized.
   void read_picture(Image& out);
 
-  /// Of the vehicle as last placed: shadows, convex and overlapping; its surface in the colours of
-  /// its file; and, where `frame` has one, its ghost, which is the fainter the nearer it is. Meshes
-  /// are boxes. Throws std::invalid_argument when the ghost's pose is not finite.
+  /// Marks of the vehicle as last placed: shadows, convex and overlapping; its surface in the
+  /// colours of its file; and, if `frame` has one, its ghost, which is fainter the nearer it is.
+  /// Meshes are drawn as boxes. Throws std::invalid_argument if the ghost's pose is not finite.
   [[nodiscard]] VehicleMarks marks(const Frame& frame);
 
-  /// m, the longest side of the box about all its visible parts, as the model's file has them; what
-  /// stands still in the world is no part of it.
+  /// The longest side of the box about all its visible parts in the model's default pose, m; parts
+  /// fixed to the world are not included.
   [[nodiscard]] double length() const;
 
-  /// The highest corner of the boxes about its visible parts, as last placed; nothing without such.
+  /// The highest corner of the boxes about its visible parts, as last placed; empty without any.
   [[nodiscard]] std::optional<SpacePoint> top() const;
 
-  /// m, that it is raised by; 0 where it need not be.
+  /// Height by which it is raised, m; 0 if it need not be.
   [[nodiscard]] double lift() const;
 
  private:

@@ -17,7 +17,7 @@ bool is_visible(const mjModel& model, int geom) {
   return model.geom_group[geom] <= kLastVisibleGroup && model.geom_type[geom] != mjGEOM_PLANE;
 }
 
-// Half sides of the box about a geom, in its own axes.
+// Half side lengths of the box about a geom, in its own axes.
 SpacePoint half_sides(const mjModel& model, int geom) {
   const mjtNum* const size = model.geom_size + static_cast<std::ptrdiff_t>(3) * geom;
   switch (model.geom_type[geom]) {

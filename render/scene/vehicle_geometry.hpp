@@ -1,4 +1,4 @@
-// Shapes of a MuJoCo vehicle, for what is drawn around MuJoCo's own picture of it.
+// Shapes of a MuJoCo vehicle, for drawing around MuJoCo's own picture of it.
 #pragma once
 
 #include <functional>
@@ -12,22 +12,22 @@
 
 namespace qsmpc::render {
 
-/// Whether the geom is seen and a part of the vehicle, not of the terrain: what is welded to the
-/// world stands.
+/// Whether the geom is visible and part of the vehicle, not of the terrain: geoms welded to the
+/// world are terrain.
 [[nodiscard]] bool is_vehicle(const mjModel& model, int geom);
 
-/// The colour that the file gives the geom.
+/// The colour of the geom in the file.
 [[nodiscard]] Colour colour_of(const mjModel& model, int geom);
 
-/// The surface of all parts of the vehicle where `data` has them, as triangles; meshes as boxes.
+/// The surface of all parts of the vehicle, placed as in `data`, as triangles; meshes as boxes.
 [[nodiscard]] std::vector<ColouredPoint> vehicle_surface(
     const mjModel& model, const mjData& data, const std::function<Colour(int geom)>& colour);
 
-/// The eight corners (m) of the box about the geom, in its own axes.
+/// The eight corners (m) of the box about the geom, aligned with the geom's axes.
 [[nodiscard]] std::vector<SpacePoint> box_corners(const mjModel& model, const mjData& data,
                                                   int geom);
 
-/// z (m) of the lowest place that the geom reaches while the last hinge that tilts it turns.
+/// z (m) of the lowest point that the geom can reach while the last hinge that tilts it rotates.
 [[nodiscard]] double lowest_place(const mjModel& model, const mjData& data, int geom);
 
 }  // namespace qsmpc::render

@@ -1,11 +1,11 @@
-# Writes a C++ source that holds a page's style and scripts as text, and their SHA-256, by which a
-# content security policy names them. Run with:
+# Writes a C++ source with a page's style and scripts as text, and their SHA-256 hashes for the
+# content security policy. Run with:
 #
 #   cmake -D OUTPUT=FILE -D "STYLES=a.css;b.css" -D "LICENCE=FILE" -D "LIBRARIES=lib.js"
 #         -D "SCRIPTS=a.js;b.js" -D "SCENE_LICENCE=FILE" -D "SCENE=bundle.js" -P embed_page.cmake
 #
-# The project's own scripts share one scope that nothing else sees. SCENE is a script apart, with the
-# libraries that it uses.
+# The project's own scripts share a private scope. SCENE is a separate script that includes its
+# libraries.
 
 function(join_files out)
   set(text "")

@@ -1,5 +1,5 @@
-# Installs the public headers: ROOM/ROOM.hpp as ROOM.hpp, those that systems and controllers outside of the
-# tree are made with, what these include, and so on. In them,
+# Installs the public headers: ROOM/ROOM.hpp as ROOM.hpp, the headers for systems and controllers
+# built outside the tree, and everything that these include, recursively. In them,
 # "controller/…" becomes "qsmpc/controller/…". Run with:
 #
 #   cmake -D SOURCE=FOLDER -D GENERATED=FOLDER -D OUTPUT=FOLDER -P install_headers.cmake
@@ -7,7 +7,7 @@
 cmake_minimum_required(VERSION 3.25)
 set(rooms models controller harness render)
 
-# What a header is called where it is installed.
+# The installed name of a header.
 function(installed_name header out)
   string(REGEX REPLACE "^([a-z]+)/([a-z]+)\\.hpp$" "\\1;\\2" parts ${header})
   list(GET parts 0 room)
@@ -17,7 +17,7 @@ function(installed_name header out)
   set(${out} ${header} PARENT_SCOPE)
 endfunction()
 
-# For systems and controllers of one's own.
+# For user-defined systems and controllers.
 set(to_do models/dynamics/own_dynamics.hpp models/dynamics/runge_kutta.hpp controller/control/own_controller.hpp)
 foreach(room IN LISTS rooms)
   list(APPEND to_do ${room}/${room}.hpp)

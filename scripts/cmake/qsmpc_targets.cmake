@@ -1,4 +1,4 @@
-# What every target of the project shares: warnings, sanitizers, the include root.
+# Shared by every target of the project: warnings, sanitizers, the include root.
 
 add_library(qsmpc_options INTERFACE)
 target_include_directories(qsmpc_options INTERFACE ${CMAKE_SOURCE_DIR})
@@ -6,37 +6,37 @@ target_compile_features(qsmpc_options INTERFACE cxx_std_20)
 target_compile_options(qsmpc_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Werror
-  # The shared library exports what the public headers declare, between pragmas, and nothing else.
+  # The shared library exports only what the public headers declare between visibility pragmas.
   -fvisibility=hidden -fvisibility-inlines-hidden
-  # A contraction into a fused multiply-add would make results depend on the processor.
+  # Contraction into fused multiply-adds would make results depend on the processor.
   -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports false positives from inside Eigen and the standard library at -O3.
   target_compile_options(qsmpc_options INTERFACE
     -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-null-dereference
     -Wno-restrict
-    # In a batch no source is the main file, the only one in which it is quiet about a class's
-    # private implementation with members from an anonymous namespace.
+    # GCC does not warn in the main file about a class whose private implementation has members from
+    # an anonymous namespace, but in a batch no source is the main file.
     -Wno-subobject-linkage)
 endif()
 if(QSMPC_SANITIZE)
-  # Left out are the checks of pointers before every access, which double the time to compile: the
-  # address sanitizer, or the processor, stops at what they would find. Clang's of pointers' arithmetic
-  # minds an offset to the null pointer, such as Eigen's to a block of an empty matrix.
+  # Excluded are the checks of pointers before every access, which double the compile time: the
+  # address sanitizer or the processor stops at the same errors. Clang's pointer arithmetic check
+  # rejects an offset to the null pointer, such as Eigen's for a block of an empty matrix.
   target_compile_options(qsmpc_options INTERFACE
     -fsanitize=${QSMPC_SANITIZE} -fno-sanitize=null,alignment,object-size,vptr,pointer-overflow
     -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)
   target_link_options(qsmpc_options INTERFACE -fsanitize=${QSMPC_SANITIZE})
 endif()
 if(QSMPC_FUZZ)
-  # What inputs reach is counted in all of the project's code.
+  # Coverage is measured in all of the project's code.
   target_compile_options(qsmpc_options INTERFACE -fsanitize=fuzzer-no-link)
   target_link_options(qsmpc_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# What nearly every source includes is parsed once a group of targets: controller (all that plans and
-# certifies, at -O3), harness (the rest of the program, whose own loops take no time) and tests.
-# Sources include what they use all the same; scripts/check-style reads them without it.
+# Headers included by nearly every source are precompiled once per group of targets: controller (all
+# that plans and certifies, at -O3), harness (the rest of the program, whose own loops take no time)
+# and tests. Sources include what they use all the same; scripts/check-style reads them without it.
 set(qsmpc_common_headers
   <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional> <limits> <map> <memory>
   <mutex> <optional> <stdexcept> <string> <string_view> <utility> <vector> <Eigen/Core>)
@@ -64,8 +64,8 @@ qsmpc_headers(controller LINK Eigen3::Eigen)
 qsmpc_headers(harness LINK Eigen3::Eigen fmt::fmt HEADERS <fmt/format.h>)
 
 # qsmpc_library(NAME SOURCES… [ALONE sources…] LINK libraries…): one room as a static library.
-# ALONE: sources that no batch can hold, such as SIMD kernels, which Highway compiles once for every
-# instruction set; or that are edited so often that they should not wait for others.
+# ALONE: sources that cannot be in a batch, such as SIMD kernels, which Highway compiles once per
+# instruction set, or that are edited so often that they should not wait for others.
 function(qsmpc_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES} ${ARG_ALONE})
@@ -76,7 +76,8 @@ function(qsmpc_library name)
     set(group controller)
   else()
     set(group harness)
-    target_link_libraries(${name} PRIVATE Eigen3::Eigen fmt::fmt)  # the precompiled header's
+    target_link_libraries(${name} PRIVATE Eigen3::Eigen fmt::fmt)  # needed by the precompiled
+                                                                   # header
   endif()
   target_compile_options(${name} PRIVATE ${qsmpc_${group}_options})
   target_precompile_headers(${name} REUSE_FROM qsmpc_${group}_headers)

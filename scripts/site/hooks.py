@@ -88,7 +88,7 @@ def on_page_markdown(markdown, page, config, files):
         return match[1] + posixpath.relpath(uri, posixpath.dirname(page.file.src_uri) or ".") + match[3]
 
     markdown = outside_of_fences(markdown, lambda text: LINK.sub(here, text))
-    # What only the runner of the pages' commands reads.
+    # Attributes that only the runner of the pages' commands reads.
     return FENCE.sub(lambda m: m[1] + m[2] + re.sub(r' (no-test|exit)="[^"]*"', "", m[3]), markdown)
 
 

@@ -1,14 +1,14 @@
-// What the statistics of a large campaign take: stores of made-up episodes, which are merged and of
-// which everything is made that `qsmpc campaign merge` makes, with seconds and memory by stage.
+// Time and memory of a large campaign's statistics: stores of made-up episodes are merged and
+// everything is produced that `qsmpc campaign merge` produces, with seconds and memory per stage.
 //
 //   campaign_scale [--episodes 1000000] [--periods 5] [--stores 4] [--out DIR]
 //   campaign_scale --stores 1000 --out DIR --make-only
 //   /usr/bin/time -v qsmpc campaign merge DIR/stores/* --out DIR/merged
 //
-// Promised: a million episodes of 75 periods in at most two minutes and 1 GB.
+// Requirement: a million episodes of 75 periods in at most two minutes and 1 GB.
 //
 // Variants share the random numbers of their seeds, some episodes fail, and store I of N is shard
-// I/N. The memory of a stage is the most that the process had until its end.
+// I/N. The memory of a stage is the process's peak up to its end.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -49,15 +49,15 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 struct ScaleArguments {
-  std::int64_t episodes = 1'000'000;  ///< of all variants together
+  std::int64_t episodes = 1'000'000;  ///< over all variants
   std::int64_t variants = 4;
-  std::int64_t periods = 5;  ///< of an episode
+  std::int64_t periods = 5;  ///< per episode
   std::int64_t stores = 4;
   std::string out;
   bool make_only = false;
 };
 
-/// What is promised of all stages after the stores are made.
+/// Time limit of all stages after the stores are made.
 constexpr double kMostSeconds = 120.0;
 constexpr double kMostMegabytes = 1024.0;
 constexpr double kKibibytesInMebibyte = 1024.0;
@@ -77,7 +77,7 @@ Campaign campaign_of(const ScaleArguments& arguments) {
   return campaign;
 }
 
-/// Numbers in (0, 1] that depend on variant and seed alone.
+/// Numbers in (0, 1] that depend only on variant and seed.
 class MadeNumbers {
  public:
   MadeNumbers(std::int64_t variant, std::uint64_t seed) : words_(kWords) {
@@ -148,7 +148,7 @@ EpisodeRow made_row(std::int64_t variant, std::uint64_t seed, std::int64_t perio
   return row;
 }
 
-/// Store `shard.index` of `shard.count`, in `folder`.
+/// Makes store `shard.index` of `shard.count` in `folder`.
 void make_store(const Campaign& campaign, const ScaleArguments& arguments, const Shard& shard,
                 const std::string& folder) {
   fs::create_directories(folder);
@@ -157,7 +157,7 @@ void make_store(const Campaign& campaign, const ScaleArguments& arguments, const
     const Store store(folder, stored_campaign(campaign, shard), stored_variants(campaign, digests),
                       campaign.seeds, false);
   }
-  // Many episodes a transaction: it is not the writing that is measured.
+  // Many episodes per transaction: writing is not what is measured.
   SQLite::Database database(folder + "/" + kStoreFile, SQLite::OPEN_READWRITE);
   database.exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = OFF");
   SQLite::Transaction transaction(database);
@@ -187,7 +187,7 @@ double cpu_seconds(const rusage& usage) {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Runs a stage, prints what it took and returns the seconds.
+/// Runs a stage, prints its time and memory and returns the seconds.
 double stage(const char* name, const std::function<void()>& work) {
   rusage before{};
   rusage after{};
@@ -203,7 +203,7 @@ double stage(const char* name, const std::function<void()>& work) {
   return taken.count();
 }
 
-/// Returns whether the promise is kept.
+/// Returns whether the requirement is met.
 bool measure(const std::vector<std::string>& folders, const std::string& merged) {
   double seconds = stage("merge, checksums", [&] { (void)merge_shards(folders, merged); });
   const StoreReader store(merged);
@@ -238,7 +238,7 @@ bool run_scale(const ScaleArguments& arguments) {
   return arguments.make_only || measure(folders, arguments.out + "/merged");
 }
 
-/// A folder of its own, which goes with it.
+/// A temporary folder, removed on destruction.
 class OwnFolder {
  public:
   OwnFolder()

@@ -118,7 +118,7 @@ class CasadiSqp:
 
     def plan(self, guess, start, noise):
         values = numpy.concatenate([start.T, *[n.T for n in noise]], axis=0)
-        # Column-major: a path after the other.
+        # Column-major: one path after another.
         parameters = values.ravel(order="F")
         begin = time.perf_counter()
         result = self.solver(
@@ -198,7 +198,7 @@ def main():
             gaps[name].append(problem.true_cost(plans[k], *paths) - least)
     print(f"{'':<28} {'ms, median':>11} {'gap, mean':>11} {'gap, most':>11}")
     for name, _, times in rows:
-        # The first plan starts from nothing.
+        # The first plan has no warm start.
         print(
             f"{name:<28} {numpy.median(times[1:]):>11.3f} {numpy.mean(gaps[name][1:]):>11.4f} "
             f"{max(gaps[name][1:]):>11.4f}"

@@ -1,10 +1,10 @@
-// What certifying costs in one control period: quantising the belief, the error budget and the
-// certificates, together and each alone, for the Dubins car of the reference thesis (8 stages) in
+// Time of certification in one control period: quantising the belief, the error budget and the
+// certificates, together and separately, for the Dubins car of the reference thesis (8 stages) in
 // the default scenario's room, open and closed loop, with 100 and 1,000 points.
 //
 //   certificate_cost [Google Benchmark's options]
 //
-// Must hold: together below 1 ms with 100 points and below 10 ms with 1,000.
+// Requirement: together below 1 ms with 100 points and below 10 ms with 1,000.
 #include <memory>
 
 #include <benchmark/benchmark.h>
@@ -52,7 +52,7 @@ controller::PlannerSettings settings_for(int points, bool closed_loop) {
   return settings;
 }
 
-/// A planned motion of which all but the certificates is done beforehand.
+/// A planned motion, with everything but the certificates prepared in advance.
 class Motion {
  public:
   Motion(int points, bool closed_loop)

@@ -1,12 +1,12 @@
-// How loose the certificates are where it is hard: bound over truth of every stage of random
-// problems, by class, as a table of median, nine tenths and worst; then the same of being unsafe at
-// any stage of a plan.
+// How conservative the certificates are in hard cases: the ratio of bound to truth at every stage
+// of random problems, by class, as a table of median, 90th percentile and maximum; then the same
+// for being unsafe at any stage of a plan.
 //
 //   certificate_table [--problems N] [--paths N] [--seed N] [--class NAME…] [--least T] [--each]
 //
-// The truth is the rate of unsafe paths among the simulated ones; stages at which it is below the
-// least (default 1e-4) or above a half do not count. Exits with 1 if a median or nine tenths is
-// above the goal of its class.
+// The truth is the rate of unsafe paths in simulation; stages at which it is below T (--least,
+// default 1e-4) or above one half do not count. Exits with 1 if a median or 90th percentile exceeds
+// the goal of its class.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -37,8 +37,8 @@ Feedback feedback_of(const Problem& problem) {
   return problem.settings.feedback_gain ? Feedback::kOwn : Feedback::kLqr;
 }
 
-/// Every obstacle that is bounded along x or the first coordinate is made 1 mm thin there, about
-/// its middle; there is one at least.
+/// Makes every obstacle that is bounded along x or the first coordinate 1 mm thin in that
+/// direction, keeping its centre; there is at least one.
 void make_thin(Problem& problem) {
   for (controller::Obstacle& obstacle : problem.settings.safe_set.obstacles) {
     auto* box = std::get_if<controller::Box>(&obstacle.form);
@@ -48,14 +48,14 @@ void make_thin(Problem& problem) {
     box->lower[0] = middle - 0.0005;
     box->upper[0] = middle + 0.0005;
   }
-  // Nothing else is to be dangerous, and a body is no thinner than its discs.
+  // Nothing else may be dangerous, and a body is no thinner than its discs.
   problem.settings.safe_set.body.discs.clear();
   const Eigen::Index dim = problem.settings.safe_set.dim();
   problem.settings.safe_set.bounds = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
                                       .upper = Eigen::VectorXd::Constant(dim, kInfinity)};
 }
 
-/// The heading's deviation of the belief is made 1 to 1.6 rad, correlations kept.
+/// Sets the belief's heading deviation to 1 to 1.6 rad and keeps the correlations.
 void make_heading_wide(Problem& problem, Generator& generator) {
   const int heading = 2;
   Eigen::MatrixXd& covariance = problem.belief.covariance;
@@ -69,7 +69,7 @@ void make_heading_wide(Problem& problem, Generator& generator) {
   covariance.col(heading) *= wanted / deviation;
 }
 
-/// The largest deviation of a feedback along the plan, in half ranges of its input.
+/// The largest standard deviation of a feedback along the plan, in half ranges of its input.
 double clamp_load(const controller::PredictedMotion& motion) {
   const std::vector<controller::SurrogateStage> stages = controller::affine_surrogates(motion);
   double most = 0.0;
@@ -153,8 +153,8 @@ struct Options {
   bool each = false;
 };
 
-/// The ratios of one class: of the value, and of the least of C1 … C4; and of any stage of a plan,
-/// the horizon's bound and the sum of the values.
+/// The ratios of one class: of the certificate, and of the least of C1 … C4; and for any stage of a
+/// plan, of the horizon's bound and of the sum of the stage values.
 struct Ratios {
   std::vector<double> value;
   std::vector<double> former;
@@ -210,7 +210,7 @@ void add_problem(const Problem& problem, const ProblemClass& row, Generator& gen
   }
 }
 
-/// Prints one row; returns whether it keeps its goals.
+/// Prints one row; returns whether it meets its goals.
 bool report(const ProblemClass& row, const Options& options) {
   Generator generator(options.seed);
   Ratios ratios;

@@ -1,12 +1,12 @@
-// How tight the certificates are: bound, truth and ratio, stage by stage, for the Dubins car of the
+// How tight the certificates are: bound, truth and ratio at every stage, for the Dubins car of the
 // reference thesis (N = 8, 100 points) and for the dynamic bicycle.
 //
 //   certificate_tightness [--paths N] [--all-stages]
 //
 // The truth is the rate of unsafe paths among N simulated ones (default 1,000,000). Exits with 1 if
-// a certificate is above its promise: stage 1 within 1.3 × truth + 0.001, stage 8 within
-// 3 × truth + 0.001 open loop and 10 × truth + 0.001 closed loop (bicycle: below 0.5 where the
-// truth is below 0.01).
+// a certificate exceeds its limit: stage 1 within 1.3 × truth + 0.001, stage 8 within 3 × truth +
+// 0.001 in open loop and 10 × truth + 0.001 in closed loop (bicycle: below 0.5 where the truth is
+// below 0.01).
 #include <iostream>
 #include <random>
 #include <string>
@@ -42,8 +42,8 @@ controller::Box box(Eigen::Index dim, double x_lower, double x_upper, double y_l
   return result;
 }
 
-/// The three places of the promise, at `margin` (m) from the vehicle's way: 1 for the car. length:
-/// of the way (m).
+/// The three places at which the limits apply, at `margin` (m) from the vehicle's path: 1 for the
+/// car. length: of the path (m).
 std::vector<Place> places(Eigen::Index dim, double margin, double length) {
   const double far = 10.0 * length;
   controller::SafeSet walls{.bounds = box(dim, -margin, far, -margin, far), .obstacles = {}};
@@ -61,7 +61,7 @@ struct Vehicle {
   controller::Gaussian belief;
   Eigen::MatrixXd inputs;
   double margin = 1.0;   ///< m, of the places
-  double length = 1.2;   ///< m, that it goes over the horizon
+  double length = 1.2;   ///< m, path length over the horizon
   bool planned = false;  ///< the planner's inputs for the place, instead of `inputs`
 };
 
@@ -120,7 +120,7 @@ struct Options {
   bool all_stages = false;
 };
 
-/// Prints one case; returns whether it keeps its promises.
+/// Prints one case; returns whether it meets its limits.
 bool report(const Vehicle& vehicle, const Place& place, bool closed_loop, const Options& options) {
   controller::PlannerSettings settings = vehicle.settings;
   settings.horizon = kHorizon;
@@ -158,7 +158,7 @@ bool report(const Vehicle& vehicle, const Place& place, bool closed_loop, const 
   return kept;
 }
 
-/// Prints every case; returns whether all keep their promises.
+/// Prints every case; returns whether all meet their limits.
 bool report_all(const Options& options) {
   std::vector<Vehicle> vehicles;
   vehicles.push_back(dubins_car());

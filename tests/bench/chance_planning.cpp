@@ -1,11 +1,11 @@
-// How long the controllers of the literature that keep chance constraints plan, going on from plan
-// to plan along the way that they drive: median and 99 % of a period.
+// Planning times of the chance-constrained controllers from the literature, plan after plan with
+// warm starts along the path that they drive: median and 99th percentile of a period.
 //
 //   taskset -c 0 chance_planning [--periods N]
 //
 // Cases: the Dubins car without obstacles (8 stages, paths without feedback) and among blocks (18),
-// and the bicycle among its obstacles; the belief is that of the second period of a drive, the
-// noise's covariance, about where the model goes.
+// and the bicycle among its obstacles. The belief is that of a drive's second period: the noise's
+// covariance, about the model's predicted state.
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -56,7 +56,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-/// ms of every period but the first.
+/// Times (ms) of every period but the first.
 std::vector<double> times_of(const Case& wanted, int periods) {
   const harness::Scenario scenario = harness::load_scenario(wanted.scenario, wanted.settings);
   const auto model = harness::model_of(scenario);

@@ -1,17 +1,16 @@
-// How the time of large problems grows with the number of points, and what a second core makes of
-// it.
+// How the time of large problems grows with the number of points, and what further threads gain.
 //
 //   ocp_scaling [--points N…] [--kept N] [--horizon N] [--threads N] [--repetitions N]
 //
 // The problem is that of the Dubins car among blocks, closed loop (dubins_blocks.yaml), with N
-// points for the belief. Three parts of a control period, each with storage that is used again, as
-// a planner does: the prediction with new assignments, where each point's noise is cut into at most
-// a hundred parts and N points (or --kept) are kept after every step; cost and gradient at these
-// assignments; and cost and gradient without noise. For each part a table of medians (ms) on one
-// thread and on several. Below it the exponents p of time ~ products^p (without noise points^p), by
-// least squares in the logarithms; products are the product points of state and noise that the
-// prediction tells apart, over all stages. Every result on several threads is compared with the one
-// on one thread, bit for bit; a difference ends the program with 1.
+// points for the belief. Three parts of a control period are timed, each with reused storage as in
+// a planner: the prediction with new assignments, where each point's noise is cut into at most a
+// hundred parts and N points (or --kept) are kept after every step; cost and gradient at these
+// assignments; and cost and gradient without noise. The table gives the median (ms) of each part on
+// one thread and on several. Below it are the exponents p of time ~ products^p (without noise
+// points^p), by least squares in the logarithms; products are the product points of state and noise
+// that the prediction distinguishes, over all stages. Every result on several threads is compared
+// bit for bit with the one on one thread; a difference ends the program with 1.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -40,10 +39,10 @@ struct Options {
   int horizon = 8;
   int threads = 2;
   int repetitions = 5;
-  int kept = 0;  // as many as there are points
+  int kept = 0;  // 0: as many as there are points
 };
 
-/// The parts' medians (ms), and what must not depend on the number of threads.
+/// The parts' medians (ms), and the results that must not depend on the number of threads.
 struct Measured {
   double predict = 0.0;
   double evaluate = 0.0;
@@ -52,7 +51,7 @@ struct Measured {
   double value_without_noise = 0.0;
   Eigen::VectorXd gradient;
   controller::Points last_stage;
-  double parts = 0.0;  // product points with a share of their own, over all stages
+  double parts = 0.0;  // product points with separate weights, over all stages
 };
 
 template <class Work>
@@ -83,7 +82,7 @@ class Problem {
     settings_.state_points = points;
     settings_.compressed_points = kept > 0 ? kept : points;
     controller::PolicyMaker policies(*model_, settings_);
-    // Round the first block, more or less.
+    // Roughly around the first block.
     const Eigen::MatrixXd inputs = Eigen::MatrixXd::Constant(1, horizon, 0.3);
     policies.make(belief_.mean, inputs,
                   Eigen::MatrixXd::Zero(model_->input_dim(), model_->state_dim()), policy_);
@@ -100,7 +99,7 @@ class Problem {
     const auto predict_with = [&](controller::Propagator& propagator) {
       controller::predict(*model_, propagator, start_.measure, policy_, run, scratch, prediction);
     };
-    // At two places in turn: what was computed for the last one is of no use.
+    // Alternates between two points, so that nothing cached from the last one can be used.
     const auto evaluate_with = [&](controller::HorizonCost& cost) {
       (void)cost.evaluate(other, result.gradient);
       return cost.evaluate(z, result.gradient);

@@ -1,15 +1,15 @@
-// What the parts of a control period cost, each alone, by the number of points, the horizon and the
-// system, with the complexity that fits best.
+// The cost of each part of a control period, by number of points, horizon and system, with the
+// best-fitting complexity.
 //
 //   ocp_stages [Google Benchmark's options, e.g. --benchmark_filter=dubins/18]
 //
 // Takes about a minute and a half. Names are PART/SYSTEM/HORIZON/POINTS. The problems are those of
-// scripts/bench-ocp: the Dubins car among blocks and the bicycle, closed loop. `POINTS` stand for
-// the belief and are kept after every step. Parts: quantise (the belief, anew), predict (under a
-// given policy, with new assignments), evaluate (cost and gradient at held assignments), compress
-// (100 points a kept one, by the split tree), certify (error budget and certificates), plan (all of
-// a plan that starts from the last one, along the way that is planned, the belief's quantiser at
-// hand). A suffix names the propagator.
+// scripts/bench-ocp: the Dubins car among blocks and the bicycle, closed loop. `POINTS` represent
+// the belief and are kept after every step. Parts: quantise (the belief, from scratch), predict
+// (under a given policy, with new assignments), evaluate (cost and gradient at fixed assignments),
+// compress (100 points per kept one, by the split tree), certify (error budget and certificates),
+// plan (a whole plan, warm-started from the last one along the planned path, with the belief's
+// quantiser at hand). A suffix names the propagator.
 #include <map>
 #include <memory>
 #include <string>
@@ -38,7 +38,7 @@ struct Case {
   int points = 100;
 };
 
-/// The problem of a case, and a plan that was made for it.
+/// The problem of a case, and a plan for it.
 class Problem {
  public:
   explicit Problem(const Case& wanted)
@@ -68,7 +68,7 @@ class Problem {
     const controller::PredictedMotion motion = controller::motion_of(planner_, belief_, plan_);
     return controller::certify(motion, settings_.safe_set, controller::error_budget(motion));
   }
-  /// Plans for where the last plan leads to; now and then starts again from the start.
+  /// Plans from where the last plan leads to; restarts from the initial state now and then.
   [[nodiscard]] const controller::Plan& next_plan(benchmark::State& state) {
     if (step_++ == kStepsOfAWay) {
       state.PauseTiming();
@@ -117,12 +117,12 @@ class Problem {
   std::unique_ptr<controller::Propagator> propagator_;
   controller::Planner planner_;
   controller::Gaussian belief_;
-  controller::Gaussian way_;  // belief that is planned for next
+  controller::Gaussian way_;  // the belief to plan from next
   int step_ = 0;
   controller::Plan plan_;
 };
 
-/// Google Benchmark calls a function several times: what it works on is made once and kept.
+/// Google Benchmark calls a function several times, so its data are created once and kept.
 Problem& problem_of(const Case& wanted) {
   static std::map<std::tuple<std::string, int, std::string, int>, std::unique_ptr<Problem>> known;
   auto& problem = known[{wanted.system, wanted.horizon, wanted.propagator, wanted.points}];
@@ -140,7 +140,7 @@ void predict_stages(benchmark::State& state, Problem& problem) {
 
 void evaluate_cost(benchmark::State& state, Problem& problem) {
   controller::HorizonCost cost = problem.horizon_cost();
-  // Two points in turn: what was computed for the last one is of no use.
+  // Alternates between two points, so that nothing cached from the last one can be used.
   const Eigen::MatrixXd inputs = problem.plan().policy.inputs;
   const Eigen::MatrixXd other = 0.99 * inputs;
   Eigen::MatrixXd gradient(inputs.rows(), inputs.cols());
@@ -219,7 +219,7 @@ void add_all() {
 }  // namespace qsmpc::testing
 
 int main(int argc, char** argv) {
-  // A default that the options given may change.
+  // A default that command-line options can override.
   std::string least_time = "--benchmark_min_time=0.1";
   std::vector<char*> arguments(argv, argv + argc);
   arguments.insert(arguments.begin() + 1, least_time.data());

@@ -1,7 +1,7 @@
-// What it takes to ask a controller outside of the program: from the situation to the input, with
-// controllers that answer at once.
+// Overhead of an external controller: from the situation to the input, with controllers that answer
+// at once.
 //
-// Promised: at most 1 ms a period beyond the controller's own time, which is next to nothing here.
+// Requirement: at most 1 ms per period beyond the controller's own time, which is negligible here.
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -21,7 +21,7 @@ constexpr int kPeriods = 5000;
 constexpr int kWarm = 100;
 constexpr double kPromised = 1.0;  // ms
 
-/// Median and 99th percentile of a period, ms. Returns whether the promise is kept.
+/// Median and 99th percentile of a period, ms. Returns whether the requirement is met.
 bool measure(const char* name, const std::vector<std::string>& overrides) {
   const harness::Scenario scenario = harness::load_scenario("dubins_obstacles", overrides);
   const auto model = harness::model_of(scenario);

@@ -1,5 +1,5 @@
-// What a step and its pullback, and a whole plan, take with systems of a user's, beside the same
-// systems built in: as a TemplatedDynamics, and the bicycle, whose loops are made by hand.
+// Times of a step, its pullback and a whole plan with user-defined systems, compared with the same
+// systems built in: as a TemplatedDynamics, and the bicycle with its hand-written loops.
 //
 //   scripts/bench own_dynamics
 #include <map>

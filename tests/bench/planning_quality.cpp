@@ -1,16 +1,16 @@
-// How near plans come to the best policies.
+// How close plans come to the best policies.
 //
 //   planning_quality [--paths N] [--starts N] [--horizon N…] [--inputs]
 //                    [--points N] [--propagator NAME] [--evaluations N]
 //
-// Open loop without obstacles, plans and optima are evaluated exactly (dubins_closed_form.hpp): a
-// plan may cost 0.1 more than the optimum at 8 stages and 0.5 at 18. Closed loop among the blocks
-// of dubins_obstacles they are evaluated on 20,000 simulated paths, the best policy is what
-// descents on N paths (default 2,000) from the plan, constant inputs and N random starts (default
-// 8) find, and a plan may cost 0.2 % more. The last three options are the planner's. --inputs:
-// prints both input sequences. "pred. best" is how much more the planner predicts for the best
-// policy than for its own: above 0 the prediction misleads, below 0 the solver ended too early or
-// in another valley. Exits with 1 where a plan costs more than promised.
+// In open loop without obstacles, plans and optima are evaluated exactly (dubins_closed_form.hpp):
+// a plan may cost 0.1 more than the optimum at 8 stages and 0.5 at 18. In closed loop among the
+// blocks of dubins_obstacles, they are evaluated on 20,000 simulated paths; the best policy is the
+// best result of descents on N paths (default 2,000) from the plan, constant inputs and N random
+// starts (default 8), and a plan may cost 0.2 % more. The last three options are the planner's.
+// --inputs: prints both input sequences. "pred. best" is how much more the planner predicts for the
+// best policy than for its own: above 0 the prediction misleads, below 0 the solver stopped too
+// early or in another local minimum. Exits with 1 if a plan costs more than allowed.
 #include "tests/support/planning_quality.hpp"
 
 #include <cstdlib>

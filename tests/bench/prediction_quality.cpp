@@ -1,4 +1,4 @@
-// Table 5-1 of the reference thesis, with what can be reached at all: the W2 distance of a
+// Table 5-1 of the reference thesis, extended by what is attainable: the W2 distance of a
 // prediction with 100 points and of 100 Monte Carlo samples to a Monte Carlo reference.
 //
 //   prediction_quality [--seeds N] [--reference N] [--law N] [--propagator NAME]
@@ -6,9 +6,9 @@
 // Defaults: 20 seeds, 2,000 samples, 50,000 for "ideal", moment_matched. The thesis prints its
 // noise covariance as diag(0.01, 0.01, 0.001); its numbers, which grow like squares, fit 0.015 I to
 // 0.02 I better, so all three are shown. "ideal" is a 100-point quantiser of the step's true law,
-// made by Lloyd's method from samples of it: about as near as 100 points can be expected to come to
-// a reference that they do not know. Exits with 1 if the prediction is not nearer than the samples
-// at some step.
+// made by Lloyd's method from samples of it: about as close as 100 points can be expected to come
+// to a reference that they do not know. Exits with 1 if the prediction is not closer than the
+// samples at some step.
 #include "tests/support/prediction_quality.hpp"
 
 #include <cmath>
@@ -41,7 +41,7 @@ struct Options {
 std::vector<controller::DiscreteMeasure> ideal_points(const QualityProblem& problem, int samples) {
   constexpr int kRounds = 60;
   constexpr int kPoints = 100;
-  constexpr unsigned kSeed = 1000000;  // none of the references'
+  constexpr unsigned kSeed = 1000000;  // differs from those of the references
   std::vector<controller::DiscreteMeasure> result;
   for (const controller::DiscreteMeasure& law : simulated_states(problem, samples, kSeed, 0)) {
     result.push_back(controller::compress(law, kPoints, kRounds).measure);
@@ -71,7 +71,7 @@ void print_rows(const std::string& quantity, const std::vector<SquaredDistances>
     const double prediction = scaled(distances[step].predictions[0]).mean();
     const double compressed = scaled(distances[step].predictions[1]).mean();
     const double ideal = scaled(distances[step].predictions[2]).mean();
-    // Of single runs; ratios of W2 are the roots of those of W2².
+    // Ratios of single runs; ratios of W2 are the square roots of those of W2².
     const double printed = kPublishedPrediction[step] / kPublishedSamples[step];
     const double published = squared ? printed : std::sqrt(printed);
     std::cout << fmt::format(
@@ -81,7 +81,7 @@ void print_rows(const std::string& quantity, const std::vector<SquaredDistances>
   }
 }
 
-/// Prints the table for one covariance; returns whether the prediction is nearer at every step.
+/// Prints the table for one covariance; returns whether the prediction is closer at every step.
 bool report(const Eigen::Vector3d& variances, const Options& options) {
   const QualityProblem problem{.noise_covariance = variances.asDiagonal()};
   const std::vector<SquaredDistances> distances = squared_distances(

@@ -1,12 +1,12 @@
-// How long a period takes the controllers that sample, by themselves: from the situation to the
-// decision, without certificates, on one thread.
+// Time per period of the sampling controllers: from the situation to the decision, without
+// certificates, on one thread.
 //
 //   rival_controllers [--periods N] [--at-most MS]
 //
 // Each drives shipped scenarios on the model without noise, horizon 18: `mppi` with 1,024 samples,
-// `risk_mppi` as it stands, and, for comparison, `nominal` and `quantised`. Median and 99th
-// percentile of a period. Exits with 1 if a median of `mppi` is above --at-most (4 ms). For figures
-// that mean something, on a core of its own: taskset -c 1 rival_controllers.
+// `risk_mppi` with its default settings, and, for comparison, `nominal` and `quantised`. Prints
+// median and 99th percentile of a period. Exits with 1 if a median of `mppi` is above --at-most (4
+// ms). For meaningful figures, pin it to one core: taskset -c 1 rival_controllers.
 #include <algorithm>
 #include <chrono>
 #include <string>
@@ -30,7 +30,7 @@ struct Options {
   double at_most = 4.0;  // ms
 };
 
-/// ms of each period.
+/// Time of each period, ms.
 std::vector<double> times_of(const std::string& scenario_name, const std::string& kind,
                              int periods) {
   const harness::Scenario scenario =

@@ -1,6 +1,6 @@
-// How fast a video is drawn and encoded, and where the time goes. An episode with as many particles
-// as asked for is made up; its pictures are then drawn part by part on one thread, which tells the
-// parts, and made into a video as `qsmpc render` does, which tells the whole.
+// How fast a video is drawn and encoded, and where the time goes. An episode with the requested
+// number of particles is made up. Its pictures are drawn part by part on one thread, for the times
+// of the parts, and then made into a video as `qsmpc render` does, for the total time.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -43,7 +43,7 @@ struct Options {
   int frames = 150;
   std::string format = "mp4";
   int threads = 2;
-  double at_least = 30.0;  // frames a second
+  double at_least = 30.0;  // frames per second
 };
 
 Eigen::Vector3d state_at(double time) {
@@ -51,7 +51,7 @@ Eigen::Vector3d state_at(double time) {
   return {kRadius * std::sin(angle), kRadius * (1.0 - std::cos(angle)), angle};
 }
 
-// Points of a sunflower: evenly spread, without a random number.
+// Points of a sunflower pattern: evenly spread, without random numbers.
 StageParticles particles_about(const Eigen::Vector3d& centre, int stage, int count) {
   StageParticles particles{models::StateBatch(3, count),
                            Eigen::VectorXd::Constant(count, 1.0 / count)};
@@ -115,7 +115,7 @@ double seconds_of(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Wall-clock time and the processor's time in all threads.
+// Wall-clock time, and processor time of all threads.
 class Part {
  public:
   explicit Part(std::string name) : name_(std::move(name)) {}
@@ -158,7 +158,7 @@ struct Parts {
   }
 };
 
-// Draws as Renderer::draw does, waiting for all drawing after each part.
+// Draws as Renderer::draw does, but waits for the GPU after each part.
 class PartByPart {
  public:
   PartByPart(const Trace& trace, const EpisodeFrames& frames, const EpisodeVideoOptions& video,
@@ -203,7 +203,7 @@ class PartByPart {
 
   const EpisodeFrames& frames_;
   EpisodeVideoOptions video_;
-  render::OffscreenContext context_;  // before what draws with it
+  render::OffscreenContext context_;  // must precede the members that draw with it
   render::Vehicle vehicle_;
   render::ScenePainter painter_;
   render::Hud hud_;
@@ -223,7 +223,7 @@ bool run(const Options& options) {
   const EpisodeView view(trace);
   const EpisodeFrames frames(view);
   {
-    constexpr int kWarmUp = 3;  // pictures in which shaders are compiled
+    constexpr int kWarmUp = 3;  // pictures, for shader compilation
     constexpr int kMeasured = 40;
     PartByPart drawing(trace, frames, video, folder / ("parts." + options.format));
     Parts warm_up;

@@ -25,7 +25,7 @@ after(async () => { await browser?.close(); });
 
 const open = (options) => openPage(browser, join(folder, "report.html"), options);
 
-// Moves the slider to a time as a user's hand would.
+// Moves the slider to a time as a user would.
 const slideTo = (page, time) => page.locator("#time").fill(String(Number(time.toFixed(1))));
 
 const vehiclePlace = (page) => page.locator("#vehicle").evaluate((vehicle) => {
@@ -42,7 +42,7 @@ test("opens from its file without an error and asks for nothing but its video", 
   const video = pathToFileURL(join(folder, "episode.mp4")).href;
   assert.deepEqual([...new Set(seen.requests)], [video]);
   assert.ok(statSync(join(folder, "report.html")).size < 5e6);
-  assert.ok(openedIn < 20_000);  // speed is measured elsewhere: this is against a page that hangs
+  assert.ok(openedIn < 20_000);  // only catches a page that hangs; speed is measured elsewhere
   await page.close();
 });
 
@@ -71,7 +71,7 @@ test("the slider moves the vehicle to where the trace has it", async () => {
 
 test("the slider moves particles, ellipses, the charts' mark and the table", async () => {
   const {page} = await open();
-  // A chart's canvas as text; what is drawn of its lines takes part in it.
+  // A chart's canvas as text, which reflects its drawn lines.
   await page.evaluate(() => {
     globalThis.inked = (id) => document.querySelector(`#${id} canvas`).toDataURL();
   });
@@ -98,7 +98,7 @@ test("the slider moves particles, ellipses, the charts' mark and the table", asy
 });
 
 test("clearance is the same in the table of the moment and in its chart, at the end too", async () => {
-  // Times of charts are numbers of 32 bits, the moment is not: on a long drive it matters.
+  // The charts' times are 32-bit numbers, the current time is not: this matters on a long drive.
   const long = temporaryFolder();
   const kLongPeriod = 1.3;  // s
   qsmpc("run", "double_integrator", "--quiet", "--no-video", "--out", long, "--fail-on", "none",
@@ -113,7 +113,7 @@ test("clearance is the same in the table of the moment and in its chart, at the 
   const unit = (await now(page, "clearance")).replace(/^\S+ /, "");
   for (let period = 0; period <= 40; ++period) {
     await slideTo(page, period * kLongPeriod);
-    await page.waitForTimeout(20);  // legends follow after the task that moved the moment
+    await page.waitForTimeout(20);  // legends follow after the task that moved the current time
     assert.equal(await now(page, "clearance"), `${await charted()} ${unit}`,
                  `period ${period}`);
   }
@@ -134,8 +134,8 @@ test("what is drawn at the foot of an axis is read as it is", async () => {
   await page.close();
 });
 
-// How far from its chart's left edge a plot begins (pixels), and on how many lines of the canvas
-// something is written just before that.
+// The distance of a plot from its chart's left edge (pixels), and the number of canvas lines with
+// text just to the left of the plot.
 const axisOf = (page, figure) => page.locator(figure).first().evaluate((one) => {
   const canvas = one.querySelector("canvas");
   const room = one.querySelector(".u-over").getBoundingClientRect().left - canvas.getBoundingClientRect().left;
@@ -162,7 +162,8 @@ test("an axis has room for its numbers, and numbers however far it reaches", asy
   assert.match(await small.locator(`${input} figcaption`).textContent(), /Input/);
   const {room} = await axisOf(small, input);
   assert.ok(room > plain.room + 4, `${plain.room} pixels, then ${room} for powers of ten`);
-  // Bounds that grow by decades a stage, beyond what a linear axis or one of 40 decades has numbers for.
+  // Bounds that grow by decades per stage, beyond the numbers of a linear axis or one of 40
+  // decades.
   const budgets = await axisOf(await run("cart_pole"), "#stage-budgets");
   assert.ok(budgets.written > 20, `${budgets.written} lines of numbers`);
 });
@@ -228,7 +229,7 @@ test("shows the numbers of summary.json", async () => {
     .replace(/ × 10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)/, (_, power) => "e" + power.replace("⁻", "-")
       .replace(/[⁰¹²³⁴⁵⁶⁷⁸⁹]/g, (d) => "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(d)))
     .split(" ")[0]);
-  // Three digits are shown; an upper bound is rounded up.
+  // Three digits are shown, with upper bounds rounded up.
   const near = (text, value) => assert.ok(
     Math.abs(number(text) - value) <= 0.011 * Math.abs(value), `${text} is not ${value}`);
   near(tiles.get("Minimum clearance"), summary.min_clearance);

@@ -1,4 +1,4 @@
-// The view in three dimensions of an episode's page, drawn by Chromium's own software.
+// The 3D view of an episode's page, rendered in software by Chromium.
 import assert from "node:assert/strict";
 import {readFileSync, statSync} from "node:fs";
 import {join} from "node:path";
@@ -27,8 +27,9 @@ async function open(options) {
 
 const whole = (page) => page.locator("#scene .whole").click();
 
-// What is seen at a time (s): how many pixels are like the first one, how many have the car's paint,
-// and the middle of those (shares of the picture); how many are coloured, and how many of those warm. The picture can be read in its own frame only.
+// What is visible at a time (s): the number of pixels similar to the first one, the number with the
+// car's paint and their centre (as fractions of the picture), the number of coloured pixels, and
+// how many of those are warm. The picture can only be read within its own frame.
 const seenAt = (page, time) => page.evaluate((value) => new Promise((resolve) => {
   const slider = document.getElementById("time");
   slider.value = value;
@@ -75,7 +76,7 @@ test("the slider moves the vehicle", async () => {
   const first = await seenAt(page, 0.2);
   const second = await seenAt(page, 2.9);
   assert.ok(first.paint > 10 && second.paint > 10);
-  // The alley leads to larger x, which is to the right when all of it is shown.
+  // The alley leads to larger x, which is to the right in the full view.
   assert.ok(second.x > first.x + 0.05, `from ${first.x} to ${second.x}`);
   await page.locator('[data-scene="follow"]').check();
   const begin = await seenAt(page, 0.2);
@@ -100,7 +101,7 @@ test("an obstacle before the vehicle is seen through", async () => {
   await page.close();
 });
 
-// The view's geometry of polygons, as a module without others.
+// The view's polygon geometry, as a module without imports.
 const polygons = () => import("data:text/javascript," +
   encodeURIComponent(readFileSync(join(source, "harness/report/web/scene_polygon.js"), "utf8")));
 

@@ -1,6 +1,7 @@
-// What is wrong with a page's layout, told from the boxes of its elements.
+// Finds problems in a page's layout from the boxes of its elements.
 
-// Everything that a page of `width` should not have, as sentences; runs in the page.
+// All layout problems of the page, as sentences; runs in the page. wide: whether even scrollable
+// parts must not be cut off.
 export function layoutProblems({wide}) {
   const problems = [];
   const slack = 1.5;  // pixels, of rounding
@@ -10,7 +11,7 @@ export function layoutProblems({wide}) {
   };
   const isShown = (element) => element.checkVisibility({visibilityProperty: true}) &&
     element.getBoundingClientRect().width > 0;
-  // Where a part may be wider than what is seen of it, since the reader can scroll it.
+  // Parts that may be wider than their visible area because the reader can scroll them.
   const scrolls = (element) => element.closest(".scroll, pre") !== null;
 
   if (document.documentElement.scrollWidth > document.documentElement.clientWidth) {
@@ -37,7 +38,7 @@ export function layoutProblems({wide}) {
     if (meet(panel.getBoundingClientRect(), other.getBoundingClientRect(), slack)) say("overlaps another panel", panel);
   }));
 
-  // Words stay within their panel.
+  // Text stays within its panel.
   for (const panel of panels) {
     const frame = panel.getBoundingClientRect();
     const walker = document.createTreeWalker(panel, NodeFilter.SHOW_TEXT);
@@ -55,7 +56,7 @@ export function layoutProblems({wide}) {
     }
   }
 
-  // Nor do the words of a drawing leave it or touch each other.
+  // Text in a drawing stays inside it and does not overlap other text.
   for (const drawing of document.querySelectorAll("svg[role=img]")) {
     if (!isShown(drawing)) continue;
     const frame = drawing.getBoundingClientRect();
@@ -67,7 +68,7 @@ export function layoutProblems({wide}) {
         say("text leaves its drawing", text);
       }
       for (const other of texts.slice(i + 1)) {
-        // The same words twice are the outline of a text and the text.
+        // Equal texts are the outline of a text and the text itself.
         if (other.textContent !== text.textContent && meet(box, other.getBoundingClientRect(), 3)) say("texts overlap", text);
       }
     });
@@ -76,7 +77,7 @@ export function layoutProblems({wide}) {
   const hasInk = (canvas) => {
     if (canvas.width === 0 || canvas.height === 0) return false;
     const context = canvas.getContext("2d");
-    // The view in three dimensions, whose pixels episode_scene.test.mjs looks at.
+    // The 3D view, whose pixels episode_scene.test.mjs checks.
     if (context === null) return true;
     return context.getImageData(0, 0, canvas.width, canvas.height).data.some((byte) => byte > 0);
   };
@@ -104,7 +105,7 @@ export function lonelyTiles() {
   }).map((tiles) => `${tiles.children.length} tiles`);
 }
 
-// The grids of the page whose last row leaves a column empty; runs in the page.
+// The grids of the page whose last row has an empty column; runs in the page.
 export function emptyColumns() {
   return [...document.querySelectorAll(".grid")].filter((grid) => {
     const boxes = [...grid.children].filter((child) => child.checkVisibility())

@@ -1,5 +1,5 @@
-// Every kind of page on a desktop's and a telephone's screen, in the light and in the dark: nothing
-// overlaps, nothing is clipped, no panel is empty. Told from boxes, not from pictures.
+// Every kind of page on a desktop and a phone screen, in light and dark mode: nothing overlaps,
+// nothing is clipped, no panel is empty. Judged from boxes, not from pictures.
 import assert from "node:assert/strict";
 import {writeFileSync} from "node:fs";
 import {join} from "node:path";
@@ -70,7 +70,7 @@ for (const name of pages) {
       test(`${name}: ${screen}, ${colorScheme}: no overlap, no clipping, no empty panel`, async () => {
         const {page, seen} = await openPage(browser, pageOf(name), {...size, colorScheme});
         await page.waitForTimeout(300);  // charts draw after the page has loaded
-        if (await page.locator("#scene").isVisible()) {  // drawn once it is scrolled to
+        if (await page.locator("#scene").isVisible()) {  // drawn only when scrolled into view
           await page.locator("#scene").scrollIntoViewIfNeeded();
           await page.locator("#scene canvas").waitFor();
           await page.evaluate(() => window.scrollTo(0, 0));

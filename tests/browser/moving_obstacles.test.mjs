@@ -1,4 +1,4 @@
-// Obstacles that move, on the page of an episode: in the map and in three dimensions.
+// Moving obstacles on the page of an episode: in the map and in 3D.
 import assert from "node:assert/strict";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
@@ -24,7 +24,7 @@ after(async () => { await browser?.close(); });
 const open = () => openPage(browser, join(folder, "report.html"));
 const slideTo = (page, time) => page.locator("#time").fill(String(Number(time.toFixed(1))));
 
-// Place and turn (degrees, clockwise on the screen) of the only one in the map.
+// Place and turn (degrees, clockwise on the screen) of the only obstacle in the map.
 const placeOf = (page) => page.locator("#others path").evaluate((body) => {
   const {a, b, e, f} = body.transform.baseVal.consolidate().matrix;
   return {x: e, y: f, turn: Math.atan2(b, a) * 180 / Math.PI};
@@ -67,7 +67,7 @@ test("their forecasts grow along the plan, follow the period and can be hidden",
   await page.close();
 });
 
-// How many pixels of the view in three dimensions are blue, and how far to the right on average.
+// The number of blue pixels in the 3D view, and their mean position to the right.
 const blueAt = (page, time) => page.evaluate((value) => new Promise((resolve) => {
   const slider = document.getElementById("time");
   slider.value = value;

@@ -1,5 +1,5 @@
-// How long an episode's page takes to open, and to follow its slider: medians of several times, in a
-// new window each. Fails where a page has 5 MB or more, or takes 2 s or more.
+// How long an episode's page takes to open and to follow its slider: medians of several times, each
+// in a new window. Fails if a page has 5 MB or more, or takes 2 s or more.
 import {statSync} from "node:fs";
 import {join} from "node:path";
 
@@ -11,7 +11,7 @@ const kMostMilliseconds = 2000;
 
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
-// From the request to the first picture with everything in it, and the time of one slide.
+// Time from the request to the first complete picture, and time of one slider move.
 async function measure(browser, file) {
   const {page, context} = await openPage(browser, file);
   const times = await page.evaluate(() => new Promise((resolve) => {

@@ -1,7 +1,7 @@
-// What the tests of pages share: the program, folders of results, and a browser that sees everything
-// a page does.
+// Shared by the tests of pages: the program, folders of results, and a browser that records
+// everything a page does.
 //
-// The environment says where things are: QSMPC_PROGRAM, QSMPC_SOURCE, QSMPC_NODE_MODULES, and
+// The environment gives the paths: QSMPC_PROGRAM, QSMPC_SOURCE, QSMPC_NODE_MODULES, and
 // QSMPC_ARTEFACTS, where screenshots are kept.
 import {execFileSync} from "node:child_process";
 import {existsSync, mkdirSync, mkdtempSync, readFileSync} from "node:fs";
@@ -29,20 +29,20 @@ export function qsmpc(...words) {
 
 export const readJson = (path) => JSON.parse(readFileSync(path, "utf8"));
 
-// WebGL in software, for the view in three dimensions.
+// Software WebGL, for the 3D view.
 export const softwareGl = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
-// With `more` of Chromium's own options.
+// `more`: further Chromium options.
 export function startBrowser(more = []) {
   const executablePath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]
     .find(existsSync);
   if (!executablePath) throw new Error("no Chromium; install the package chromium");
-  // Tests may run as root, where the sandbox of Chromium cannot.
+  // Tests may run as root, where Chromium's sandbox does not work.
   return chromium.launch({executablePath, args: ["--no-sandbox", "--disable-gpu", ...more]});
 }
 
-// Opens a page from its file. `seen` collects what it logs as an error, throws, asks for (but
-// itself), and any dialog that it opens.
+// Opens a page from its file. `seen` collects its logged errors, exceptions, requests (except for
+// itself) and dialogs.
 export async function openPage(browser, file, options = {}) {
   const context = await browser.newContext({viewport: {width: 1280, height: 900}, ...options});
   const page = await context.newPage();
@@ -64,8 +64,8 @@ export async function openPage(browser, file, options = {}) {
   return {page, seen, context, openedIn: performance.now() - begin};
 }
 
-// Waits until `holds(argument)`, evaluated in the page, is true. (Playwright's own way evaluates text
-// in the page, which its policy forbids.)
+// Waits until `holds(argument)`, evaluated in the page, is true. (Playwright's own function
+// evaluates text in the page, which the page's policy forbids.)
 export async function until(page, holds, argument) {
   const patience = performance.now() + 20_000;
   while (!(await page.evaluate(holds, argument))) {
@@ -74,6 +74,7 @@ export async function until(page, holds, argument) {
   }
 }
 
-// Scrolls wider than the screen, which a reader on a telephone would have to.
+// By how many pixels the page is wider than the screen: phone readers would have to scroll
+// sideways.
 export const sidewaysScroll = (page) =>
   page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);

@@ -39,7 +39,7 @@ for (const kind of ["comparison", "campaign"]) {
       const {page, seen} = await openPage(browser, join(folders[kind], "report.html"), options);
       assert.deepEqual(seen, {errors: [], requests: [], dialogs: []});
       assert.equal(await sidewaysScroll(page), 0);
-      // Its style is in force: the policy names it by its hash.
+      // Its style is applied: the policy allows it by its hash.
       const ground = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
       assert.equal(ground, name === "dark" ? "rgb(16, 21, 26)" : "rgb(244, 246, 248)");
       assert.ok(await page.locator("figure svg[role=img]").count() > 2);

@@ -1,5 +1,5 @@
 // The program's campaigns on a real Slurm and behind a real sshd: the same rows and statistics as
-// from one process, whatever dies.
+// from one process, whichever processes die.
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -23,7 +23,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-/// Most of whose time is waiting, so that it lasts as long on a busy machine and takes no cores.
+/// Mostly waits, so that its duration does not depend on the machine's load and it uses no cores.
 constexpr const char* kSlowController = R"(while read -r line; do
   case $line in
     *'"scenario"'*) echo '{"protocol": 1}' ;;
@@ -47,7 +47,7 @@ std::string slow_campaign(const TemporaryFolder& folder, int seeds) {
                                  folder / "slow.sh", seeds));
 }
 
-/// What one process makes of the campaign, in the folder "one".
+/// Runs the campaign in one process, into the folder "one".
 void drive_alone(const TemporaryFolder& folder, const std::string& campaign) {
   const ProcessResult result =
       run_qsmpc({"campaign", campaign, "--jobs", "80", "--quiet", "--out", folder / "one"});
@@ -69,7 +69,7 @@ std::string slurm_job_of(const std::string& folder) {
   return nlohmann::json::parse(launch.at("record").get<std::string>()).at("job");
 }
 
-/// The tasks of the job in this state, and on this node where one is given.
+/// The tasks of the job in this state, on `node` if one is given.
 std::vector<std::string> tasks_in(const std::string& job, const std::string& state,
                                   const std::string& node = "") {
   std::vector<std::string> words{"squeue",
@@ -86,8 +86,8 @@ std::vector<std::string> tasks_in(const std::string& job, const std::string& sta
   return tasks;
 }
 
-// So many that the campaign is still in its middle when the node has been missed and is back, after
-// 40 s.
+// Enough to keep the campaign running until the lost node has been detected and is back, after 40
+// s.
 constexpr int kSeeds = 240;
 
 TEST(SlurmProgram, drives_what_one_process_does_whatever_dies) {
@@ -103,7 +103,7 @@ TEST(SlurmProgram, drives_what_one_process_does_whatever_dies) {
   ASSERT_THAT(tasks_in(job, "RUNNING", "n1"), SizeIs(10));
   ASSERT_THAT(tasks_in(job, "RUNNING", "n2"), SizeIs(10));
 
-  // A node dies; of those on the other one, a task is requeued and one is cancelled.
+  // One node dies; on the other node, one task is requeued and one is cancelled.
   kill_node("n2");
   const std::vector<std::string> others = tasks_in(job, "RUNNING", "n1");
   slurm_command({"scontrol", "requeue", job + "_" + others.at(0)});
@@ -115,7 +115,7 @@ TEST(SlurmProgram, drives_what_one_process_does_whatever_dies) {
   EXPECT_EQ(status.exit_code, 0) << status.errors;
   EXPECT_THAT(status.output, HasSubstr("CANCELLED"));
 
-  // All are cancelled in the middle, and what is missing is driven by others.
+  // All tasks are cancelled midway, and others drive the missing episodes.
   EXPECT_EQ(run_qsmpc({"campaign", "cancel", shared}).exit_code, 0);
   EXPECT_TRUE(soon([] { return slurm_command({"squeue", "--noheader"}).empty(); }));
   EXPECT_LT(finished_leases(shared), std::size_t{kSeeds});

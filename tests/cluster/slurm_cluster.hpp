@@ -10,7 +10,7 @@
 
 namespace qsmpc::testing {
 
-/// What one of Slurm's commands answers. Throws where it fails, and outside of slurm_here.
+/// The output of one of Slurm's commands. Throws if it fails, and outside slurm_here.
 inline std::string slurm_command(const std::vector<std::string>& words) {
   if (std::getenv("SLURM_CONF") == nullptr) {
     throw std::runtime_error("to be run by tests/cluster/slurm_here");
@@ -18,12 +18,12 @@ inline std::string slurm_command(const std::vector<std::string>& words) {
   return harness::command_output(words);
 }
 
-/// Kills slurmd of the node `name` with all that runs there.
+/// Kills slurmd of the node `name` and everything running there.
 inline void kill_node(const std::string& name) {
   slurm_command({QSMPC_SOURCE_DIR "/tests/cluster/slurm_here", "--kill", name});
 }
 
-/// Starts it again, and waits until Slurm knows.
+/// Starts it again and waits until Slurm reports the node.
 inline void start_node(const std::string& name) {
   slurm_command({QSMPC_SOURCE_DIR "/tests/cluster/slurm_here", "--start", name});
 }

@@ -1,4 +1,4 @@
-// A job array on a real Slurm of two nodes, which slurm_here starts.
+// A job array on a real two-node Slurm cluster, which slurm_here starts.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -86,14 +86,14 @@ TEST_F(Slurm, cancels_what_runs_what_waits_and_what_depends_on_them) {
 }
 
 TEST_F(Slurm, warns_workers_before_their_time_is_over) {
-  // Slurm takes times in whole minutes, looks every 30 s who is to be warned, and warns of what
-  // ends before it looks again: with a limit of one minute that can be before the script's first
+  // Slurm takes times in whole minutes, checks every 30 s which jobs to warn, and warns those that
+  // end before its next check: with a limit of one minute that may be before the script's first
   // line.
   const std::string record =
       start("trap 'exit 130' TERM; sleep 600 & wait", "true", 1, {.on = "slurm", .time = "2"});
   ASSERT_TRUE(soon(
       [&] {
-        // Asked once: between two answers a task that waits may have begun.
+        // Queried once: a waiting task may start between two queries.
         const TaskCondition now = states(record).front().condition;
         return now != TaskCondition::kRunning && now != TaskCondition::kWaiting;
       },

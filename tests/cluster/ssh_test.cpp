@@ -94,7 +94,7 @@ TEST_F(Ssh, leaves_no_worker_when_the_process_that_started_it_is_killed) {
   EXPECT_TRUE(soon([&] { return !is_process(word_of(folder / "worker")); }));
 }
 
-/// Kills our ssh to `host`.
+/// Kills the ssh client to `host`.
 void kill_client(const std::string& host) {
   const std::string own = std::to_string(getpid());
   std::ifstream children("/proc/self/task/" + own + "/children");

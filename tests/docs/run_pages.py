@@ -58,7 +58,8 @@ class Reader:
 
     def enter(self, commands):
         """Output and exit code of the first command that fails, or of the last."""
-        # Functions run in this shell: folders and variables stay. A command that fails ends the function.
+        # Functions run in this shell, so folders and variables persist. A failing command ends the
+        # function.
         lines = re.sub(r"\\\n", " ", commands).strip().split("\n")
         body = " && ".join(f"{{ {line}\n}}" for line in lines if not line.startswith("#"))
         self.shell.stdin.write(f"{body}\necho \"@@ $?\"\n")

@@ -1,5 +1,5 @@
-// The YAML language server as an editor drives it: by the Language Server Protocol over its standard
-// input and output. The environment says where things are: QSMPC_PROGRAM, QSMPC_SOURCE and
+// The YAML language server, driven as by an editor: over the Language Server Protocol on standard
+// input and output. The environment gives the paths: QSMPC_PROGRAM, QSMPC_SOURCE and
 // QSMPC_NODE_MODULES.
 import {execFileSync, spawn} from "node:child_process";
 import {existsSync, mkdtempSync, writeFileSync} from "node:fs";
@@ -17,10 +17,10 @@ export const source = required("QSMPC_SOURCE");
 export const qsmpc = (...words) =>
   execFileSync(required("QSMPC_PROGRAM"), words, {encoding: "utf8", stdio: ["ignore", "pipe", "pipe"]});
 
-// Kinds of files that have a schema; a document of the kind is called *.KIND.yaml here.
+// File kinds with a schema; a document of a kind is called *.KIND.yaml here.
 const kinds = ["scenario", "campaign", "contest"];
 
-// { kind: address } of the schemas that the program prints.
+// { kind: address } of the schemas printed by the program.
 function writeSchemas() {
   const folder = mkdtempSync(join(tmpdir(), "qsmpc_editor_"));
   return kinds.map((kind) => {
@@ -60,7 +60,8 @@ export class LanguageServer {
     this.notify("exit", null);
   }
 
-  // What the server says of `text` as a file of the kind: [{line, message}], lines counted from 1.
+  // The server's diagnostics of `text` as a file of the kind: [{line, message}], lines counted from
+  // 1.
   async diagnose(kind, text) {
     const uri = this.open(kind, text);
     const found = await new Promise((resolve) => this.diagnostics.set(uri, resolve));
@@ -68,7 +69,7 @@ export class LanguageServer {
     return found.map(({range, message}) => ({line: range.start.line + 1, message}));
   }
 
-  // What it shows of a key: the text that appears over it. Lines are counted from 1.
+  // The server's hover text of a key. Lines are counted from 1.
   async hover(kind, text, line, character) {
     const uri = this.open(kind, text);
     await new Promise((resolve) => this.diagnostics.set(uri, resolve));

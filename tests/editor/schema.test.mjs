@@ -1,5 +1,5 @@
-// An editor with the YAML language server takes every file that qsmpc takes, and shows at its line
-// what is wrong in one that it refuses.
+// An editor with the YAML language server accepts every file that qsmpc accepts, and marks the line
+// of each error in a file that qsmpc refuses.
 import assert from "node:assert/strict";
 import {mkdtempSync, readdirSync, readFileSync} from "node:fs";
 import {tmpdir} from "node:os";
@@ -70,7 +70,7 @@ test("the scenario that an episode leaves is taken", async () => {
   }
 });
 
-// What is written in place of a piece of a shipped scenario, and what the editor says at its line.
+// Replacements of a piece of a shipped scenario, and the editor's message at that line.
 for (const [right, wrong, says] of [
   ["  horizon: 8", "  horzon: 8", /horzon is not allowed/],
   ["solver: lbfgs", "solver: lbfgz", /Value is not accepted.*lbfgs.*slsqp/s],

@@ -1,4 +1,4 @@
-// The examples of controllers, run as their pages say.
+// The controller examples, run as their pages describe.
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@ namespace example_controllers_test {
 
 const std::string kExamples = std::string(QSMPC_SOURCE_DIR) + "/examples/";
 
-/// The summary of an example's drive on the model itself, which is to arrive.
+/// The summary of an example's drive on the model itself; the drive must arrive.
 nlohmann::json drive(const std::string& example, const std::vector<std::string>& settings) {
   const TemporaryFolder folder;
   std::vector<std::string> arguments = {"run",        kExamples + example + "/scenario.yaml",
@@ -38,13 +38,13 @@ TEST(Examples, pure_pursuit_in_python_arrives) {
   EXPECT_GT(summary["min_clearance"], 0.3);
 }
 
-/// The same by a program of Python with packages of PyPI.
+/// The same with a Python program and its PyPI packages.
 nlohmann::json drive_in_python(const std::string& example, const std::string& program,
                                std::vector<std::string> settings = {}) {
   const std::string python = std::string(QSMPC_BINARY_DIR) + "/tests/examples/venv/bin/python3";
   settings.push_back("controller.command=[" + python + ", " + kExamples + example + "/" + program +
                      "]");
-  // The tests share the machine's cores with each other.
+  // Tests run in parallel and share the cores.
   settings.emplace_back("controller.deadline=100");
   return drive(example, settings);
 }
@@ -77,7 +77,7 @@ TEST(Examples, multi_stage_mpc_with_do_mpc_arrives_with_certified_plans) {
 
 TEST(Examples, mpc_in_cpp_builds_outside_of_the_tree_and_arrives_with_certified_plans) {
   const TemporaryFolder folder;
-  // A folder in which the headers stand as they do when they are installed.
+  // A folder with the headers laid out as when installed.
   const std::string source = QSMPC_SOURCE_DIR;
   const std::string command = "mkdir -p '" + folder / "include" + "' && ln -s '" + source + "' '" +
                               (folder / "include/qsmpc") + "' && cmake -S '" + kExamples +

@@ -1,4 +1,4 @@
-// The example of a vehicle of the user's own, as its page has it.
+// The example of a user's own vehicle, as on its page.
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -30,7 +30,7 @@ TEST(OwnVehicle, answers_as_the_model_with_the_gain_that_the_doctor_suggests) {
   const std::string before = "actuator: \"steering\", gain: ";
   const std::size_t at = suggestion.find(before);
   ASSERT_NE(at, std::string::npos) << suggestion;
-  // The wheelbase over the speed, within what a tenth of the input's range is measured to.
+  // The wheelbase over the speed, to the accuracy of a measurement at a tenth of the input's range.
   EXPECT_NEAR(std::stod(suggestion.substr(at + before.size())), 0.6, 0.01);
 }
 

@@ -1,13 +1,13 @@
-// Files of binary formats, fuzzed by edits: a sound one is changed as lines of text say, and read.
-// Changed bytes would try HDF5 and SQLite, and hardly ever what is made of their contents.
+// Binary files fuzzed by edits: a sound file is edited as lines of text say, then read. Mutated
+// bytes would test HDF5 and SQLite, and hardly ever the code that uses their contents.
 #pragma once
 
 #include <string>
 
 namespace qsmpc::testing {
 
-/// A trace, of three periods of the scenario that edited_files.cpp has, after these edits, read and
-/// shown in every way. A line is one edit, and one that makes no sense is left out:
+/// Reads a trace after these edits and shows it in every way; the trace has three periods of the
+/// scenario in example_drive.hpp. Each line is one edit; a line that makes no sense is skipped:
 ///
 ///     set PATH INDEX VALUE            an element of a dataset, counted along the last dimension
 ///     rows PATH COUNT                 the length of a dataset's first dimension
@@ -17,10 +17,10 @@ namespace qsmpc::testing {
 ///     integer OBJECT ATTRIBUTE VALUE  an attribute that is an integer
 ///     scenario OLD => NEW             NEW for the first OLD in the recorded scenario
 ///
-/// Throws what a reader throws that is no refusal.
+/// Throws whatever a reader throws other than a refusal.
 void read_edited_trace(const std::string& edits);
 
-/// A campaign's store, of two variants and three seeds, after these edits, read and shown in every
+/// Reads a campaign store of two variants and three seeds after these edits and shows it in every
 /// way:
 ///
 ///     set TABLE COLUMN ROW VALUE      a cell, ROW counted from 0; VALUE may be `null`

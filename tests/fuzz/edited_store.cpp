@@ -32,7 +32,7 @@ std::string in_quotes(const std::string& name) {
   return text + "\"";
 }
 
-/// A store that is changed. What SQLite refuses is left undone.
+/// A store under edit. Edits that SQLite refuses are skipped.
 class EditedStore {
  public:
   explicit EditedStore(const std::string& path) : database_(path, SQLite::OPEN_READWRITE) {
@@ -73,7 +73,7 @@ class EditedStore {
     }
   }
 
-  /// The condition for the row of this number, whose key columns may be anything.
+  /// The condition for the row of this number, whatever its key columns are.
   [[nodiscard]] std::string row_condition(const std::string& table, int row) {
     std::string keys;
     SQLite::Statement columns(database_, "SELECT name FROM pragma_table_info(?) WHERE pk > 0");
@@ -156,7 +156,7 @@ Campaign example_campaign() {
   return campaign;
 }
 
-/// Everything that is made of a store.
+/// Produces everything that is made of a store.
 void show(const std::string& folder) {
   const CampaignStatus status = campaign_status(folder);
   (void)status_table(status);

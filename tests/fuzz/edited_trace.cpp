@@ -32,7 +32,7 @@ using hdf5::Handle;
 
 constexpr hsize_t kMostElements = 100'000;
 
-/// An HDF5 file that is changed. What cannot be done is left undone.
+/// An HDF5 file under edit. Impossible edits are skipped.
 class EditedFile {
  public:
   explicit EditedFile(const std::string& path)
@@ -162,7 +162,7 @@ class EditedFile {
   std::string scenario_ = to_yaml(example_drive());
 };
 
-/// Everything that is made of a trace without a simulator.
+/// Produces everything that is made of a trace without a simulator.
 void show(const Trace& trace) {
   const EpisodeView view(trace);
   (void)summary_json(view);

@@ -1,4 +1,4 @@
-// What edited files are of, and what their edits have in common.
+// The drive that edited files record, and the edits they have in common.
 #pragma once
 
 #include <string>
@@ -7,16 +7,16 @@
 
 namespace qsmpc::testing {
 
-/// Three periods with a few points.
+/// Three periods, few points.
 [[nodiscard]] const harness::Scenario& example_drive();
 
-/// What an edit `scenario OLD => NEW` says.
+/// The content of an edit `scenario OLD => NEW`.
 struct Replacement {
   std::string old;
   std::string with;
 };
 
-/// Of such a line; without ` => `, nothing is put in the place of what it has.
+/// Parses such a line; without ` => `, the replacement is empty.
 [[nodiscard]] Replacement replacement(const std::string& line);
 
 }  // namespace qsmpc::testing

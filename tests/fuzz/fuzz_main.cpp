@@ -1,4 +1,4 @@
-// The entry of libFuzzer. Which target it is is said by QSMPC_FUZZ_TARGET.
+// The entry point for libFuzzer. QSMPC_FUZZ_TARGET selects the target.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>

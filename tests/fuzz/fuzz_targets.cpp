@@ -33,7 +33,7 @@ using namespace harness;
 
 const std::string kScenarios = std::string(QSMPC_SOURCE_DIR) + "/models/scenarios";
 
-/// A scenario whose system and bounds the other readers are given.
+/// The scenario whose system and bounds the other readers use.
 const Scenario& example() {
   static const Scenario scenario = load_scenario(kScenarios + "/dubins_obstacles.yaml");
   return scenario;
@@ -44,7 +44,7 @@ const models::SystemDescription& example_system() {
   return model->description();
 }
 
-/// A file for readers that take one, removed when the process ends.
+/// A file with `bytes` for readers of files, removed when the process ends.
 std::string as_file(const std::string& bytes) {
   static const TemporaryFolder folder;
   return folder.file("bytes", bytes);
@@ -61,8 +61,7 @@ void hold_within(const Eigen::MatrixXd& inputs, const controller::InputBounds& b
   hold((inputs.colwise() - bounds.lower).minCoeff() >= 0.0, "an input is below its bound");
 }
 
-/// Whether `read` returns, rather than refuse with a `Refusal`. Anything else that it throws goes
-/// on.
+/// Whether `read` returns instead of refusing with a `Refusal`. Other exceptions are passed on.
 template <class Refusal, class Read>
 bool is_read(Read read) {
   try {
@@ -73,7 +72,7 @@ bool is_read(Read read) {
   }
 }
 
-/// A scenario that is accepted is written as it was read.
+/// An accepted scenario is written as it was read.
 void read_scenario_text(const std::string& bytes) {
   const ScenarioSource source{.folder = kScenarios};
   std::string written;
@@ -135,7 +134,7 @@ void read_path_text(const std::string& bytes) {
   hold(is_path == (notes == 0), "a path is refused without a word, or accepted with one");
 }
 
-/// Obstacles that are accepted are safe to ask: each is written.
+/// Accepted obstacles are safe to query: each one is written.
 void read_obstacle_text(const std::string& bytes) {
   Problems problems("obstacles.yaml");
   const auto obstacles =
@@ -153,8 +152,7 @@ void read_mapping(const std::string& bytes) {
   });
 }
 
-/// What is taken for an answer can be applied: inputs of the right size, finite and within the
-/// bounds.
+/// An accepted answer can be applied: inputs of the right size, finite and within the bounds.
 void read_controller_answer(const std::string& bytes) {
   (void)is_read<WrongAnswer>([&] { check_greeting(bytes); });
   const controller::InputBounds bounds{.lower = example().controller.input_lower,

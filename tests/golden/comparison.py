@@ -7,23 +7,23 @@ import numpy
 
 import records
 
-# Within the tolerance, two floating-point numbers differ by at most RELATIVE times the largest magnitude
-# in their array (the larger of the two, for single numbers) plus ABSOLUTE; whole numbers and texts
-# do not differ. Another variant of the C library's functions moves inputs of a plan by up to 1 % of
-# their range: the last bits decide when a search stops.
+# Tolerance: two floating-point numbers may differ by at most RELATIVE times the largest magnitude
+# in their array (for single numbers, the larger of the two) plus ABSOLUTE; whole numbers and texts
+# must be equal. Another implementation of the C library's functions changes the inputs of a plan by
+# up to 1 % of their range, because the last bits decide when a search stops.
 RELATIVE = 0.05
 ABSOLUTE = 1e-9
-# What may be different altogether then: how a search went, and which of two near bounds was less.
+# May then differ entirely: the course of a search, and which of two close bounds was smaller.
 DISCRETE = re.compile(r"(^|[/.])(fallback|fallbacks|iterations|iterations_median|kind|status)([.@]|$)"
                       r"|ocp\.iterations|\.iterations\.")
-# Particles may be merged in another way, so that their means alone are compared.
+# Particles may be merged differently, so only their means are compared.
 UNORDERED = re.compile(r"/particles/")
-# Pictures and figures, within the tolerance.
+# Pictures and figures that agree within the tolerance.
 PIXEL_SHARE = 0.02  # of the pixels may differ by more than PIXEL_LEVELS
 PIXEL_LEVELS = 24
 FIGURE_ABSOLUTE = 1.0  # units of the drawing
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
-# Differences that are shown of one file.
+# Maximum number of differences shown per file.
 SHOWN = 20
 
 
@@ -116,7 +116,7 @@ def within_tolerance(key, golden, now):
             return False
         if DISCRETE.search(key):
             return True
-        # The means of few huge elements follow these, which may not be among the stored ones.
+        # The means are dominated by a few huge elements, which may not be among the stored ones.
         spread = golden.get("mean_magnitude") or 0.0
         if golden.get("nan") != now.get("nan") or any(
                 not near(golden.get(p), now.get(p), spread) for p in ("mean", "mean_magnitude")):
@@ -136,8 +136,8 @@ class Result:
 
     def __init__(self):
         self.differences = []  # in words
-        self.tolerated = 0  # entries with other bits, within the tolerance
-        self.new = []  # keys that the golden data do not have
+        self.tolerated = 0  # entries with different bits, within the tolerance
+        self.new = []  # keys missing in the golden data
 
 
 def compare_records(golden_path, now_path, exact):

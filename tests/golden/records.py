@@ -17,10 +17,10 @@ import h5py
 import numpy
 import yaml
 
-SAMPLES = 64  # elements kept of an array
-BLOCKS = 16  # blocks of rows with a checksum of their own
+SAMPLES = 64  # stored elements per array
+BLOCKS = 16  # blocks of rows with their own checksums
 
-# Components of keys that are left out: the clock, the program's version, and prose.
+# Components of excluded keys: the clock, the program's version, and prose.
 LEFT_OUT = {"comment", "deadline_misses", "description", "finished_at", "ocp_ms", "times_real_time",
             "timing", "version", "wall_ms"}
 
@@ -169,7 +169,7 @@ def add_csv(records, path):
         rows = list(csv.reader(file))
     for column, name in enumerate(rows[0]):
         cells = [plain_number(row[column]) for row in rows[1:]]
-        # A missing number is NaN, so that the others stay numbers.
+        # A missing number becomes NaN, so that the others stay numbers.
         if not any(isinstance(cell, str) and cell for cell in cells) and any(cells):
             cells = [math.nan if cell == "" else cell for cell in cells]
         elif any(isinstance(cell, str) for cell in cells):
@@ -189,7 +189,7 @@ def read_picture(path):
     raw = subprocess.run(
         ["ffmpeg", "-loglevel", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
         check=True, stdout=subprocess.PIPE).stdout
-    # Width and height stand at the head of every PNG file.
+    # Width and height are at the start of every PNG file.
     head = path.read_bytes()[16:24]
     width, height = int.from_bytes(head[:4], "big"), int.from_bytes(head[4:], "big")
     return numpy.frombuffer(raw, dtype=numpy.uint8).reshape(height, width, 3)

@@ -1,4 +1,4 @@
-// A program of somebody else's: it plans, certifies and drives with the installed library.
+// A third-party program: plans, certifies and drives with the installed library.
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace {
 
 using namespace qsmpc;
 
-/// A plan of the controller alone, without a scenario, and what is certified of it.
+/// A plan by the controller alone, without a scenario, and its certificates.
 bool plans_and_certifies() {
   const auto car = models::make_dynamics("dubins", {{"speed", 1.5}}, 0.1);
   controller::ControllerSettings settings;
@@ -49,7 +49,7 @@ bool plans_and_certifies() {
          controller::horizon_bound(certificates) <= 0.02;
 }
 
-/// An episode of a shipped scenario, written and read again.
+/// An episode of a shipped scenario, written and read back.
 bool drives() {
   const harness::Scenario scenario = harness::load_scenario(
       "dubins_obstacles", {"plant.kind=analytic", "limit.steps=20", "controller.horizon=6"});
@@ -62,7 +62,7 @@ bool drives() {
          std::filesystem::exists("episode.h5");
 }
 
-/// What the library throws is caught as what it is.
+/// The library's exceptions are caught with their types.
 bool refuses() {
   try {
     (void)harness::load_scenario("dubins_obstacles", {"controller.horizon=0"});

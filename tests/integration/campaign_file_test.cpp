@@ -1,4 +1,4 @@
-// Campaign files from the outside: listed and validated.
+// Campaign files through the program: listed and validated.
 #include <string>
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// Campaigns through the program: what they write, that nothing is lost or double however they end,
-// and what is refused.
+// Campaigns through the program: what they write, that no episode is lost or duplicated however
+// they end, and what is refused.
 
 #include <chrono>
 #include <csignal>
@@ -94,7 +94,7 @@ TEST(Campaign, results_do_not_depend_on_the_number_of_jobs) {
   EXPECT_EQ(testing::results_of(folder / "one"), testing::results_of(folder / "three"));
 }
 
-/// Starts the campaign and kills it after `delay`, unless it ends before.
+/// Starts the campaign and kills it after `delay`, unless it ends earlier.
 int run_and_kill(const std::string& file, const std::string& out, std::chrono::microseconds delay) {
   const auto start = std::chrono::steady_clock::now();
   ProcessOptions options;
@@ -132,7 +132,7 @@ TEST(Campaign, a_rule_stops_it_after_the_same_seeds_for_any_number_of_jobs_and_a
   EXPECT_THAT(part.errors, HasSubstr("--shard: found 1/2, expected all seeds in one folder"));
 }
 
-/// Number of episodes that the store in `out` says are done; 0 where there is no store yet.
+/// Number of episodes that the store in `out` reports as done; 0 if there is no store yet.
 int done_in(const std::string& out) {
   const ProcessResult status = testing::run_qsmpc({"campaign", "status", out, "--json"});
   return status.exit_code == 0 ? nlohmann::json::parse(status.output)["done"].get<int>() : 0;
@@ -162,8 +162,8 @@ TEST(Campaign, killed_at_any_moment_and_started_again_it_ends_as_if_it_never_was
   ASSERT_EQ(campaign(file, whole, {"--quiet"}).exit_code, 0);
   const auto duration = std::chrono::duration_cast<std::chrono::microseconds>(
       std::chrono::steady_clock::now() - start);
-  // A campaign is killed some five times before it comes to its end; it is compared then, and the
-  // next one begins. How fast the machine is by then decides how many there are, nothing else.
+  // A campaign is killed about five times before it completes; then it is compared and the next one
+  // starts. Only the number of campaigns depends on the machine's speed.
   std::mt19937 random(17);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the clock adds the rest
   std::uniform_int_distribution<std::int64_t> microseconds(0, 2 * duration.count() / 5);
   int done = 0;
@@ -176,7 +176,7 @@ TEST(Campaign, killed_at_any_moment_and_started_again_it_ends_as_if_it_never_was
       continue;
     }
     ASSERT_EQ(code, 128 + SIGKILL);
-    // Others find the store as the kill has left it.
+    // On every other kill the next start finds the store exactly as the kill left it.
     if (++kills % 2 != 0) continue;
     const int still_done = done_in(killed);
     EXPECT_GE(still_done, done) << "an episode that was done is lost";

@@ -1,5 +1,5 @@
-// Campaigns that several processes drive through a folder: what becomes of them is what one process
-// leaves, whatever happens to the others.
+// Campaigns that several processes run through a shared folder: the result equals that of one
+// process, whatever happens to the others.
 
 #include <algorithm>
 #include <chrono>
@@ -34,7 +34,7 @@ using testing::ProcessResult;
 using testing::run_qsmpc;
 using testing::TemporaryFolder;
 
-/// Names of the traces that belong to the campaign in `folder`, without those in its tasks'
+/// Names of the traces that belong to the campaign in `folder`, excluding those in its tasks'
 /// folders.
 std::vector<std::string> own_traces(const std::string& folder) {
   std::vector<std::string> names = testing::files_below(folder, ".h5");
@@ -42,7 +42,7 @@ std::vector<std::string> own_traces(const std::string& folder) {
   return names;
 }
 
-/// A campaign, what one process makes of it, and the folder in which tasks drive it.
+/// A campaign, its result from one process, and the folder in which tasks run it.
 class Cluster : public ::testing::Test {
  protected:
   void drive_whole(int seeds, const std::string& extra = "") {
@@ -60,7 +60,7 @@ class Cluster : public ::testing::Test {
     return run_qsmpc(words, options);
   }
 
-  /// The plan of the campaign in `out`, as tasks that are started by hand find it.
+  /// Plans the campaign in `out` as hand-started tasks find it.
   void plan(std::int64_t lease_seeds = 2) const {
     fs::create_directories(out);
     write_lease_plan(lease_plan(load_campaign(file), lease_seeds), out);
@@ -80,13 +80,13 @@ class Cluster : public ::testing::Test {
     EXPECT_EQ(testing::rows_of(out), testing::rows_of(whole));
     EXPECT_EQ(testing::results_of(out), testing::results_of(whole));
     EXPECT_EQ(own_traces(out), own_traces(whole));
-    // Killed tasks may have left some in their own folders.
+    // Killed tasks may have left partial files in their own folders.
     std::vector<std::string> partial = testing::files_below(out, ".partial");
     std::erase_if(partial, [](const std::string& name) { return name.starts_with("cluster/"); });
     EXPECT_TRUE(partial.empty());
   }
 
-  /// Processes of the tasks that say that they work, and have driven something.
+  /// Processes of the tasks that report working.
   [[nodiscard]] std::vector<pid_t> working() const {
     std::vector<pid_t> processes;
     std::error_code ignored;
@@ -122,7 +122,7 @@ TEST_F(Cluster, three_tasks_leave_what_one_process_leaves) {
     EXPECT_TRUE(testing::files_in(out).contains(name)) << name;
   }
   EXPECT_TRUE(testing::files_below(out, "-wal").empty());
-  // One process takes it for a campaign that is done, and tasks find nothing to do.
+  // A single process considers the campaign done, and tasks find nothing to do.
   EXPECT_EQ(run_qsmpc({"campaign", file, "--out", out, "--quiet"}).exit_code, 0);
   EXPECT_EQ(with_tasks().exit_code, 0);
   EXPECT_EQ(run_qsmpc({"campaign", "resume", out, "--quiet"}).exit_code, 0);
@@ -158,7 +158,7 @@ TEST_F(Cluster, a_task_that_sleeps_and_wakes_up_does_no_harm) {
       since = std::chrono::steady_clock::now();
       return false;
     }
-    // Until others have driven what it had begun.
+    // Waits until others have driven what it had begun.
     const bool is_all = finished() == 10;
     if (!is_all && std::chrono::steady_clock::now() - since < std::chrono::seconds(20))
       return false;
@@ -187,7 +187,7 @@ TEST_F(Cluster, killed_with_all_tasks_at_any_moment_and_resumed_it_ends_as_if_it
     const ProcessResult killed = with_tasks(options);
     EXPECT_TRUE(killed.exit_code == 128 + SIGKILL || killed.exit_code == 0) << killed.exit_code;
     ProcessResult resumed;
-    // The system may still be about to end them.
+    // The system may still be terminating them.
     for (int attempt = 0; attempt < 50; ++attempt) {
       resumed = run_qsmpc({"campaign", "resume", out, "--quiet"});
       if (resumed.exit_code != 3) break;
@@ -219,7 +219,7 @@ TEST_F(Cluster, ctrl_c_ends_the_tasks_and_resume_goes_on) {
 }
 
 TEST_F(Cluster, cancelled_from_elsewhere_and_resumed_it_is_whole) {
-  drive_whole(120);  // far from its end when the tasks hear of it
+  drive_whole(120);  // far from complete when the tasks receive the signal
   ProcessOptions options;
   options.meanwhile = [&](pid_t) {
     if (finished() < 3) return false;
@@ -348,7 +348,7 @@ TEST_F(Cluster, what_does_not_go_together_is_told_in_one_line) {
     expect_refused(run_qsmpc({"campaign", command, folder.path()}), "plan");
   }
   EXPECT_FALSE(fs::exists(out));
-  // One process does not go on with what tasks have begun, nor tasks with what one process has.
+  // One process does not continue what tasks have begun, nor tasks what one process has begun.
   plan();
   expect_refused(run_qsmpc({"campaign", file, "--out", out}), "resume");
   ASSERT_EQ(with_tasks().exit_code, 0);

@@ -1,5 +1,5 @@
-// The command line from the outside: what it says of itself, of what it does not know, and the
-// scenario that it writes to begin with.
+// The command line from the outside: its help and version, its answers to unknown arguments, and
+// the starter scenario that it writes.
 #include <algorithm>
 #include <filesystem>
 #include <string>

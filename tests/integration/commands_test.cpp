@@ -1,4 +1,4 @@
-// Commands that drive nothing: what they print, exit codes.
+// Commands that drive nothing: output and exit codes.
 
 #include <algorithm>
 #include <string>
@@ -62,7 +62,7 @@ TEST(Commands, warn_of_limits_that_the_start_exceeds) {
   const auto json = nlohmann::json::parse(run_qsmpc({"validate", file, "--json"}).output);
   EXPECT_EQ(json["ok"], true);
   EXPECT_EQ(json["warnings"].size(), 1U);
-  // A standard deviation from the wall.
+  // One standard deviation from the wall.
   const ProcessResult run =
       run_qsmpc({"run", file, "--set", "limit.steps=1", "--set", "risk.plan=0.1", "--set",
                  "initial_state.covariance=[0.01, 0.01, 0.01]", "--no-video", "--quiet",

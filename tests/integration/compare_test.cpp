@@ -1,4 +1,4 @@
-// `qsmpc compare` from the outside: exit codes, what it prints, files left behind.
+// `qsmpc compare` from the outside: exit codes, output, files left behind.
 
 #include <algorithm>
 #include <csignal>
@@ -25,7 +25,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// Few particles, periods, episodes and paths, so that a test is quick.
+// Few particles, periods, episodes and paths, to keep tests quick.
 const std::vector<std::string> kSmall = {
     "--set", "controller.quantisation={state: 27, noise: 16, compressed: 27}", "--set",
     "limit.steps=15"};
@@ -107,7 +107,7 @@ TEST(Compare, prints_a_table_and_uses_the_named_folder_by_default) {
   const ProcessResult result = compare("dubins_corridor", "", {}, {.folder = folder.path()});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_THAT(result.output, HasSubstr("analytic: the model, but for rounding"));
-  // With digits that belong to the settings.
+  // With digits that depend on the settings.
   EXPECT_THAT(result.output,
               ContainsRegex("out/dubins_corridor-compare-[0-9a-f]+/comparison.json"));
   EXPECT_THAT(result.errors, HasSubstr("comparing: "));

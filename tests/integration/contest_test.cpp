@@ -1,5 +1,5 @@
-// Contests through the program: what they write, and that one that was killed ends as one that was
-// not.
+// Contests through the program: what they write, and that a killed and restarted contest ends like
+// an uninterrupted one.
 
 #include <chrono>
 #include <csignal>
@@ -23,7 +23,7 @@ using testing::ProcessOptions;
 using testing::ProcessResult;
 using testing::TemporaryFolder;
 
-/// Short drives of two controllers, one of which has a choice.
+/// Short drives of two controllers, one of them with a choice of settings.
 std::string short_contest(const TemporaryFolder& folder, int seeds, const std::string& more = "",
                           const std::string& common = "limit.steps: 6") {
   return folder.file("short.yaml",
@@ -108,7 +108,7 @@ TEST(Contest, json_has_what_was_tried_and_what_everybody_believed) {
   EXPECT_EQ(lqr["overall"]["versus"]["unsafe"]["result"], "tie");
 }
 
-/// Starts the contest and kills it after `delay`, unless it ends before.
+/// Starts the contest and kills it after `delay`, unless it ends earlier.
 int contest_and_kill(const std::string& file, const std::string& out,
                      std::chrono::milliseconds delay) {
   const auto start = std::chrono::steady_clock::now();
@@ -129,7 +129,7 @@ TEST(Contest, that_was_killed_again_and_again_ends_as_one_that_was_not) {
   int delay = 40;
   while (contest_and_kill(file, folder / "again", std::chrono::milliseconds(delay)) != 0) {
     ++killed;
-    delay += delay / 4;  // in the end it is long enough
+    delay += delay / 4;  // eventually it is long enough
     ASSERT_LT(killed, 40);
   }
   EXPECT_GT(killed, 1);

@@ -1,5 +1,5 @@
-// Wrong vehicles and mappings from the outside: what `validate` and `run` refuse, what `run` warns
-// of, and what `doctor` prints.
+// Faulty vehicles and mappings from the outside: what `validate` and `run` refuse, what `run` warns
+// about, and what `doctor` prints.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -115,7 +115,7 @@ TEST(Doctor, run_warns_of_a_time_step_at_which_the_plant_diverges) {
   EXPECT_THAT(run("0.001").errors, Not(HasSubstr("the plant breaks")));
 }
 
-/// Wheels of the differential robot that turn too slowly for its speed.
+/// A differential robot whose wheels turn too slowly for its speed.
 constexpr const char* kSlowWheels =
     "[{actuator: left_motor, parameter: speed, gain: 1.25}, "
     "{actuator: right_motor, parameter: speed, gain: 1.25}]";
@@ -144,7 +144,7 @@ TEST(Doctor, prints_every_answer_and_gains_that_work) {
   const ProcessResult wrong = run_qsmpc({"doctor", "differential_robot", "--set", slow, "--json"});
   EXPECT_EQ(wrong.exit_code, 1) << wrong.errors;
   const auto json = nlohmann::json::parse(wrong.output);
-  EXPECT_EQ(json.at("answers").size(), 6U);  // three states without and with the input
+  EXPECT_EQ(json.at("answers").size(), 6U);  // three states, each without and with the input
   EXPECT_EQ(json.at("answers")[0].at("verdict"), "size");
   const TemporaryFolder folder;
   const std::string mended =

@@ -1,4 +1,4 @@
-// Controllers outside of the program, from the outside: exit codes, files, campaigns, interrupts.
+// External controllers, run by the program: exit codes, files, campaigns, interrupts.
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -22,7 +22,7 @@ using ::testing::Not;
 const std::string kData = std::string(QSMPC_SOURCE_DIR) + "/tests/data/controllers";
 const std::string kBuilt = std::string(QSMPC_BINARY_DIR) + "/tests/controllers";
 
-/// The scenario in `folder` that is driven by the responder, which stands beside it.
+/// A scenario in `folder` driven by the responder, which lies beside it.
 std::string scenario_in(const TemporaryFolder& folder, const std::string& options = "{}") {
   std::filesystem::copy(kData + "/responder.py", folder / "responder.py");
   return folder.file("mine.yaml",
@@ -54,7 +54,7 @@ TEST(OutsideController, stands_beside_its_scenario_and_is_found_from_anywhere) {
   EXPECT_EQ(summary_in(out)["controller"], "external");
   EXPECT_EQ(read_text(out + "/controller.log"), "controller of mine\ndrive 3\n");
   EXPECT_THAT(read_text(out + "/report.html"), HasSubstr("external, python3 responder.py"));
-  // The resolved scenario is the same drive.
+  // The resolved scenario gives the same drive.
   const ProcessResult again = run_qsmpc(
       {"run", out + "/scenario.yaml", "--no-video", "--out", folder / "again"}, {.folder = "/tmp"});
   EXPECT_EQ(again.exit_code, 0) << again.errors;
@@ -116,7 +116,7 @@ TEST(OutsideController, that_is_not_there_is_refused_before_anything_is_driven) 
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
-/// The failing variants end as faults, the others drive, with any number of jobs the same.
+/// The failing variants end as faults, the others complete; the same with any number of jobs.
 TEST(OutsideController, in_campaigns_fails_by_itself_and_the_campaign_goes_on) {
   const TemporaryFolder folder;
   (void)scenario_in(folder);
@@ -145,14 +145,14 @@ TEST(OutsideController, in_campaigns_fails_by_itself_and_the_campaign_goes_on) {
     const std::string out = folder / jobs;
     const ProcessResult result =
         run_qsmpc({"campaign", campaign, "--jobs", jobs, "--quiet", "--json", "--out", out});
-    EXPECT_EQ(result.exit_code, 1) << result.errors;  // faults are to be told
+    EXPECT_EQ(result.exit_code, 1) << result.errors;  // because of the faults
     const auto json = nlohmann::json::parse(result.output);
     EXPECT_EQ(json["done"], 24);
     EXPECT_EQ(json["outcomes"]["fault"], 12);
     EXPECT_EQ(json["variants"]["good"]["outcomes"]["timeout"], 3);
     EXPECT_EQ(json["variants"]["hangs"]["outcomes"]["fault"], 3);
     EXPECT_THAT(read_text(out + "/episodes.csv"), HasSubstr("signal 11 (Segmentation fault)"));
-    // Traces of the failed ones, too, and the logs of all that said something in their drive.
+    // Traces of the failed episodes as well, and a log of every controller that printed something.
     EXPECT_EQ(files_below(out, "episode.h5").size(), 24U);
     EXPECT_GE(files_below(out, "controller.log").size(), 12U);
     costs.push_back(json["variants"]["good"]["cost"]);
@@ -182,7 +182,7 @@ TEST(OutsideController, that_hangs_does_not_keep_ctrl_c_from_being_heard) {
       run_qsmpc({"run", scenario, "--no-video", "--quiet", "--out", folder / "out", "--set",
                  "controller.deadline=1000"},
                 {.meanwhile = [&](pid_t program) {
-                  // It hangs in period 2, after the log's line about the drive.
+                  // It hangs in period 2, after the log line about the drive.
                   if (!std::filesystem::exists(folder / "out/episode.h5.partial")) return false;
                   if (read_text(pids).empty()) return false;
                   kill(program, SIGINT);

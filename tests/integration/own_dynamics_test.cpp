@@ -1,5 +1,5 @@
-// Systems of a user's through the program: the examples, by equations and from libraries that are
-// built outside of the tree.
+// User-defined systems through the program: the examples, by equations and from libraries built
+// outside the tree.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 
 const std::string examples = std::string(QSMPC_SOURCE_DIR) + "/examples/";
 
-/// The library of an example, built by its own CMakeLists.txt in `folder` against the public
+/// The library of an example, built in `folder` by its own CMakeLists.txt against the public
 /// headers.
 std::string built_library(const std::string& example, const std::string& folder) {
   const std::string command =
@@ -66,7 +66,7 @@ TEST_P(OwnDynamics, drive_alike_by_equations_and_from_a_library_built_outside) {
   EXPECT_EQ(summary["outcome"], "reached");
   EXPECT_LT(summary["certificate"]["next_step"]["mean"], 0.5);
 
-  // What is left is read without the library, and driven again with it.
+  // The results are read without the library, and driven again with it.
   const ProcessResult again = run_qsmpc(
       {"run", in_cpp + "/scenario.yaml", "--no-video", "--out", folder.path() + "/again"});
   EXPECT_EQ(again.exit_code, 0) << again.errors;

@@ -1,4 +1,4 @@
-// `qsmpc predict` from the outside: exit codes, what it prints, files left behind.
+// `qsmpc predict` from the outside: exit codes, output, files left behind.
 
 #include <algorithm>
 #include <csignal>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-// Few particles, so that a test is quick.
+// Few particles, to keep tests quick.
 const std::vector<std::string> kSmall = {
     "--set", "controller.quantisation={state: 27, noise: 16, compressed: 27}"};
 
@@ -132,7 +132,7 @@ TEST(Predict, what_differs_has_a_folder_of_its_own_by_default) {
   ASSERT_EQ(run_with("controller.horizon=2"), 0);
   ASSERT_EQ(run_with("controller.horizon=3"), 0);
   EXPECT_THAT(files_in(out), SizeIs(2));
-  // The same command has the same folder again.
+  // The same command may reuse its folder.
   ASSERT_EQ(run_with("controller.horizon=3"), 0);
   EXPECT_THAT(files_in(out), SizeIs(2));
   ASSERT_EQ(run_with("name=a/b"), 0);
@@ -222,7 +222,7 @@ TEST(Predict, a_full_disk_is_exit_code_3_and_keeps_the_older_files) {
   }
 }
 
-/// Sends `signal` once the output folder is there: the long simulation is then about to begin.
+/// Sends `signal` once the output folder exists: the long simulation is about to start then.
 ProcessResult predict_and_signal(const std::string& out, int signal) {
   return predict("dubins_corridor", out, {"--monte-carlo", "1000000000", "--quiet"},
                  {.meanwhile = [&](pid_t process) {

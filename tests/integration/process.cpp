@@ -29,7 +29,7 @@ namespace {
     const auto bytes = static_cast<rlim_t>(options.file_size_limit);
     const rlimit limit{.rlim_cur = bytes, .rlim_max = bytes};
     setrlimit(RLIMIT_FSIZE, &limit);
-    std::signal(SIGXFSZ, SIG_IGN);  // the write then fails with EFBIG
+    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit then fails with EFBIG
   }
   if (options.address_space >= 0) {
     const auto bytes = static_cast<rlim_t>(options.address_space);

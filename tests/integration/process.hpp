@@ -1,4 +1,4 @@
-// Runs the built program as a user does and looks at what it prints, returns and leaves behind.
+// Runs the built program as a user would and checks its output, exit status and files.
 #pragma once
 
 #include <functional>
@@ -20,21 +20,21 @@ struct ProcessResult {
 
 struct ProcessOptions {
   std::string folder{};  ///< current folder of the process
-  /// Called with the process's number while it runs, again and again until it returns true.
+  /// Called repeatedly with the process id while the process runs, until it returns true.
   std::function<bool(pid_t)> meanwhile{};
   std::vector<std::string> unset{};  ///< environment variables to remove
   long file_size_limit = -1;         ///< bytes; writing more fails as on a full disk
-  long address_space = -1;           ///< bytes that the process may map, as by ulimit -v
+  long address_space = -1;           ///< bytes of address space, as by ulimit -v
 };
 
 /// Starts qsmpc with `arguments` and waits for its end.
 [[nodiscard]] ProcessResult run_qsmpc(const std::vector<std::string>& arguments,
                                       const ProcessOptions& options = {});
 
-/// Names of what is in a folder; none where there is no such folder.
+/// Names of a folder's entries; empty if there is no such folder.
 [[nodiscard]] std::set<std::string> files_in(const std::string& folder);
 
-/// The whole content of a file; empty where there is none.
+/// The whole content of a file; empty if it does not exist.
 [[nodiscard]] std::string read_text(const std::string& path);
 
 }  // namespace qsmpc::testing

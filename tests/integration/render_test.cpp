@@ -1,4 +1,4 @@
-// `qsmpc render` from the outside: the files that it writes, as ffprobe reads them, and what it
+// `qsmpc render` from the outside: the files that it writes, as reported by ffprobe, and what it
 // refuses.
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::vector<std::string> small_run(const std::string& out) {
           "--out", out};
 }
 
-/// What ffprobe says of the video stream, "codec,width,height,frames".
+/// ffprobe's description of the video stream, "codec,width,height,frames".
 std::string probe(const std::string& video) {
   const std::string command =
       "ffprobe -v error -count_frames -select_streams v:0 -show_entries "
@@ -89,10 +89,10 @@ class Render : public ::testing::Test {
 };
 
 TEST_F(Render, writes_the_format_that_the_ending_asks_for) {
-  // 0.6 s and the second of the outcome.
+  // 0.6 s plus one second for the outcome.
   EXPECT_EQ(probed("a.mp4", {}), "h264,320,180,16");
   EXPECT_EQ(probed("a.webm", {}), "vp9,320,180,16");
-  EXPECT_EQ(probed("a.gif", {}), "gif,640,360,20");  // at 12 frames a second
+  EXPECT_EQ(probed("a.gif", {}), "gif,640,360,20");  // at 12 frames per second
   EXPECT_EQ(probed("b.gif", {"--size", "160x90", "--fps", "5"}), "gif,160,90,8");
   EXPECT_EQ(probed("a.film", {"--format", "webm", "--size", "160x90"}), "vp9,160,90,16");
 }
@@ -143,7 +143,7 @@ TEST_F(Render, a_still_is_a_png_of_the_size_asked_for) {
   EXPECT_THAT(probed("s.png", {"--still", "0.6", "--size", "400x200"}), StartsWith("png,400,200"));
 }
 
-// The address sanitizer takes terabytes of it for its shadow, before the program begins.
+// The address sanitizer reserves terabytes for its shadow memory before the program starts.
 #if !QSMPC_ADDRESS_SANITIZER
 TEST_F(Render, too_little_address_space_is_told_in_a_line) {
   for (const long limit : {450'000'000L, 500'000'000L, 600'000'000L, 800'000'000L}) {
@@ -174,7 +174,7 @@ TEST_F(Render, says_what_drew_and_what_it_cost) {
   EXPECT_DOUBLE_EQ(numbers["seconds"], 1.6);
   EXPECT_GT(numbers["simulation_ms"], 0.0);
   EXPECT_THAT(std::string(numbers["gl"]), StartsWith("egl: "));
-  // Beside another file, numbers of its own.
+  // Numbers for another file are written separately.
   (void)probed("a.mp4", {});
   EXPECT_EQ(nlohmann::json::parse(read_text(path("a.mp4.json")))["frames"], 16);
 }
@@ -202,7 +202,7 @@ TEST_F(Render, wrong_values_are_refused_in_one_line) {
   EXPECT_THAT(files_in(episode()), Not(::testing::Contains("video.json")));
 }
 
-/// As if neither library were installed: files that are no libraries stand in their place.
+/// As if neither library were installed: invalid files take their place.
 class WithoutOpenGl : public Render {
  protected:
   WithoutOpenGl() {

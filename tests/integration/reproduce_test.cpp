@@ -1,4 +1,4 @@
-// `qsmpc reproduce` from the outside: exit codes, what it prints, files left behind.
+// `qsmpc reproduce` from the outside: exit codes, output, files left behind.
 
 #include <algorithm>
 #include <csignal>
@@ -74,7 +74,7 @@ TEST(Reproduce, an_unknown_experiment_is_refused_before_anything_is_written) {
   EXPECT_FALSE(fs::exists(folder.path() + "/new"));
 }
 
-/// Sends `signal` once the first experiment is written; many drives follow it.
+/// Sends `signal` once the first experiment is written; many drives are still to come.
 ProcessResult stop_after_first(const std::string& out, int signal) {
   return reproduce(out, {"figure-4-1", "table-5-4", "--seeds", "2000", "--quiet"},
                    {.meanwhile = [&](pid_t process) {

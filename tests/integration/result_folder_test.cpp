@@ -1,4 +1,5 @@
-// A folder that holds a result already: the same one is replaced, another one only with --force.
+// A folder that already holds a result: the same one is replaced, a different one only with
+// --force.
 
 #include <functional>
 #include <string>
@@ -42,7 +43,7 @@ std::vector<std::string> quick(const std::string& command, const std::string& ou
 
 struct Command {
   const char* name;
-  const char* result;  // a file of it
+  const char* result;  // one of its files
 };
 
 class ResultFolder : public ::testing::TestWithParam<Command> {};

@@ -39,7 +39,7 @@ std::vector<std::string> small_run(const std::string& out, std::vector<std::stri
 
 bool exists(const std::string& path) { return std::filesystem::exists(path); }
 
-/// How many files in `folder` are unfinished.
+/// The number of unfinished files in `folder`.
 int partial_files(const std::string& folder) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -48,7 +48,7 @@ int partial_files(const std::string& folder) {
   return count;
 }
 
-/// What ffprobe says of the video stream, "codec,width,height,frames".
+/// ffprobe's description of the video stream, "codec,width,height,frames".
 std::string probe(const std::string& video) {
   const std::string command =
       "ffprobe -v error -count_frames -select_streams v:0 -show_entries "
@@ -198,7 +198,7 @@ TEST(Run, a_drive_that_is_unsafe_fails_unless_told_otherwise) {
 struct Broken {
   const char* name;
   const char* text;      // of the scenario file
-  const char* expected;  // regular expression that the line must match
+  const char* expected;  // regular expression that the error line must match
 };
 
 constexpr const char* kValid =
@@ -265,7 +265,7 @@ TEST(Run, an_output_folder_that_cannot_be_written_is_exit_code_3) {
   EXPECT_THAT(result.errors, HasSubstr(file));
 }
 
-// A limit on the size of files stands for a full disk: some write in the middle of the trace fails.
+// A file size limit stands in for a full disk: a write in the middle of the trace fails.
 TEST(Run, a_full_disk_is_exit_code_3_and_leaves_nothing_half_written_under_a_final_name) {
   const TemporaryFolder folder;
   const ProcessResult result = run_qsmpc(small_run(folder.path()), {.file_size_limit = 30000});
@@ -281,7 +281,7 @@ TEST(Run, an_interrupt_keeps_the_trace_and_a_playable_video) {
   const ProcessResult result =
       run_qsmpc({"run", "dubins_obstacles", "--set", "video.size=320x180", "--out", folder.path()},
                 {.meanwhile = [&](pid_t process) {
-                  // Once some steps are in the file; the whole episode needs many times this size.
+                  // Once some steps are in the file; the whole episode is many times as large.
                   if (!exists(partial) || std::filesystem::file_size(partial) < 300000)
                     return false;
                   kill(process, SIGINT);
@@ -298,7 +298,7 @@ TEST(Run, an_interrupt_keeps_the_trace_and_a_playable_video) {
 TEST(Run, an_interrupt_while_the_video_is_drawn_is_told_and_exits_with_130) {
   const TemporaryFolder folder;
   const std::string video = folder.path() + "/episode.mp4";
-  // Many frames: drawing takes much longer than it takes the signal to come.
+  // Many frames: drawing takes much longer than the signal's delivery.
   const ProcessResult result = run_qsmpc(
       small_run(folder.path(), {"--set", "video.size=1280x720", "--set", "video.fps=240"}),
       {.meanwhile = [&](pid_t process) {
@@ -314,7 +314,7 @@ TEST(Run, an_interrupt_while_the_video_is_drawn_is_told_and_exits_with_130) {
   EXPECT_EQ(partial_files(folder.path()), 0);
 }
 
-/// Whether the process has taken over SIGTERM, as it does before anything else.
+/// Whether the process has installed its SIGTERM handler, which it does first.
 bool catches_sigterm(pid_t process) {
   const std::string status = read_text("/proc/" + std::to_string(process) + "/status");
   const std::size_t at = status.find("SigCgt:");
@@ -338,7 +338,7 @@ TEST(Run, a_plant_that_takes_very_many_steps_hears_that_it_is_to_end) {
       }});
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_EQ(result.errors, "qsmpc: interrupted\n");
-  EXPECT_FALSE(exists(out));  // it has not even begun to drive
+  EXPECT_FALSE(exists(out));  // driving has not even started
 }
 
 TEST(Run, sizes_beyond_the_memory_are_refused_before_anything_is_done) {
@@ -372,7 +372,7 @@ TEST(Run, a_killed_episode_can_be_rendered_and_reported_as_far_as_it_came) {
 
 TEST(Run, a_fault_of_the_plant_is_an_outcome_with_mujocos_words) {
   const TemporaryFolder folder;
-  // Gains at which the robot's wheels spin until MuJoCo gives up.
+  // With these gains the robot's wheels spin until MuJoCo fails.
   const ProcessResult result = run_qsmpc(
       {"run", "differential_robot", "--no-video", "--out", folder.path() + "/out", "--set",
        "limit.steps=6", "--set",

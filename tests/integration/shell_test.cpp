@@ -1,4 +1,4 @@
-// What the program writes for shells and for readers of manuals, as bash, zsh and groff take it.
+// Output for shells and manual readers, checked with bash, zsh and groff.
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -17,7 +17,7 @@ using namespace testing;
 
 using ::testing::HasSubstr;
 
-/// What a shell command prints, with what it complains of.
+/// The output of a shell command, including its errors.
 std::string printed_by(const std::string& command) {
   // NOLINTNEXTLINE(bugprone-command-processor,cert-env33-c): shells are what is tested
   std::FILE* pipe = ::popen(("( " + command + " ) 2>&1").c_str(), "r");
@@ -31,7 +31,7 @@ std::string printed_by(const std::string& command) {
   return text;
 }
 
-/// What bash offers after `words`, of which the last is being typed.
+/// Bash's completions after `words`, the last of which is being typed.
 std::string offered_after(const std::string& words) {
   const std::string program = QSMPC_PROGRAM;
   return printed_by("bash -c 'PATH=" + std::filesystem::path(program).parent_path().string() +

@@ -1,5 +1,5 @@
-// Every shipped scenario on every plant of its system, for a few periods; and how often episodes
-// of the reference thesis's experiments end well.
+// Every shipped scenario on every plant of its system, for a few periods; and how often episodes of
+// the reference thesis's experiments succeed.
 #include <algorithm>
 #include <cstdint>
 #include <map>
@@ -21,7 +21,7 @@ namespace shipped_scenarios_test {
 
 using namespace testing;
 
-/// What a vehicle of `system` can be: the model, and each shipped MuJoCo one.
+/// The plants of `system`: the model, and each shipped MuJoCo plant.
 std::vector<std::string> plants_of(const std::string& system) {
   std::vector<std::string> names = {"analytic"};
   for (const ShippedPlant& plant : shipped_plants()) {
@@ -46,7 +46,7 @@ TEST_P(ShippedScenarios, run_on_every_plant_of_their_system_with_a_certificate_e
     for (const StepRecord& step : trace.steps) {
       EXPECT_FALSE(step.fallback);
       ASSERT_FALSE(step.certificates.empty());
-      // None of these is at its obstacles so soon.
+      // None of them reaches its obstacles this early.
       EXPECT_LE(step.certificates.front().value, 0.1);
       EXPECT_EQ(step.certificates.size(), static_cast<std::size_t>(scenario.controller.horizon));
     }
@@ -56,13 +56,13 @@ TEST_P(ShippedScenarios, run_on_every_plant_of_their_system_with_a_certificate_e
 INSTANTIATE_TEST_SUITE_P(All, ShippedScenarios, ::testing::ValuesIn(shipped_scenario_names()),
                          [](const auto& tested) { return tested.param; });
 
-/// A row of the thesis's tables, or its like on another plant.
+/// A row of the thesis's tables, or its equivalent on another plant.
 struct Experiment {
   std::string name;
   std::string scenario;
   std::vector<std::string> overrides{};
   std::string plant = "analytic";
-  bool expensive = false;  ///< one seed, but with --slow
+  bool expensive = false;  ///< one seed, except with --slow
 };
 
 void PrintTo(const Experiment& experiment, std::ostream* out) { *out << experiment.name; }
@@ -106,8 +106,8 @@ const std::vector<Experiment>& experiments() {
 
 class ThesisExperiments : public ::testing::TestWithParam<Experiment> {};
 
-// Nine of ten seeds are promised. Of the few that are driven by default one may be among the
-// others; a controller that does not do its work loses nearly all of them.
+// The requirement is nine of ten seeds. Among the few driven by default one may fail; a controller
+// that does not work fails on nearly all of them.
 TEST_P(ThesisExperiments, reach_the_target_without_entering_the_unsafe_set) {
   const Experiment& experiment = GetParam();
   const Scenario scenario =

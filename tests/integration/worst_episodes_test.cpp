@@ -1,4 +1,4 @@
-// The worst episodes of a campaign on its page: what is linked, what is made.
+// The worst episodes on a campaign's page: what is linked, what is rendered.
 
 #include <filesystem>
 #include <string>
@@ -25,7 +25,7 @@ using testing::TemporaryFolder;
 
 class WorstEpisodes : public ::testing::Test {
  protected:
-  /// Two variants with two seeds, all of which run out of time; videos are small.
+  /// Two variants with two seeds, all of which time out; videos are small.
   void drive(const std::string& traces) {
     const std::string file = folder_.file("short.yaml",
                                           "name: short\n"
@@ -65,7 +65,7 @@ TEST_F(WorstEpisodes, can_be_driven_by_the_command_on_the_page_and_are_linked_th
       {"run", "variants/1.yaml", "--seed", "4", "--out", "episodes/1/4", "--no-video"},
       {.folder = out_});
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  // A trace of something else in the place of an episode is not taken for it.
+  // Another trace in the place of an episode is not accepted as that episode.
   fs::copy(out_ + "/episodes/1/4", out_ + "/episodes/1/3");
   fs::create_directories(out_ + "/episodes/0/4");
   fs::copy(out_ + "/episodes/1/4/episode.h5", out_ + "/episodes/0/4/episode.h5");

@@ -1,4 +1,4 @@
-// What a prediction with a hundred particles says that the bounds cost, against simulated paths.
+// The bound penalties predicted with a hundred particles, compared with simulated paths.
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace bounds_penalty_test {
 
 using namespace testing;
 
-/// The bounds' penalties over all stages for particles of equal weights at each.
+/// The bounds' penalties summed over all stages, for equally weighted particles.
 double price_of_paths(const std::vector<Points>& states, const PlannerSettings& settings) {
   SafeSet room = settings.safe_set;
   room.obstacles.clear();
@@ -29,7 +29,7 @@ double price_of_paths(const std::vector<Points>& states, const PlannerSettings& 
   return price;
 }
 
-/// The same for the particles of a plan, each for itself.
+/// The same for the particles of a plan, each as a point.
 double price_of_particles(const Plan& plan, const PlannerSettings& settings) {
   SafeSet room = settings.safe_set;
   room.obstacles.clear();
@@ -45,7 +45,7 @@ double price_of_particles(const Plan& plan, const PlannerSettings& settings) {
 
 class BoundsPenalty : public ::testing::TestWithParam<bool> {};
 
-// Near the target of dubins_obstacles two walls are felt by few paths, at the end of the horizon.
+// Near the target of dubins_obstacles few paths reach two of the walls, at the end of the horizon.
 TEST_P(BoundsPenalty, of_a_hundred_particles_is_near_that_of_paths) {
   const std::unique_ptr<const models::Dynamics> car = default_car();
   const Place place = places_among_blocks().back();
@@ -64,7 +64,7 @@ TEST_P(BoundsPenalty, of_a_hundred_particles_is_near_that_of_paths) {
     ASSERT_GT(truth, 5.0);
     EXPECT_GT(plan.cost.of("box"), 0.6 * truth) << turn;
     EXPECT_LT(plan.cost.of("box"), 1.2 * truth) << turn;
-    // Without what they stand for, the particles know less.
+    // As points, without the normal laws that they stand for, the particles are less accurate.
     EXPECT_LT(std::abs(plan.cost.of("box") - truth),
               std::abs(price_of_particles(plan, settings) - truth))
         << turn;

@@ -1,4 +1,4 @@
-// No certificate and no W2 bound lies below the truth: random problems, every stage, every kind of
+// No certificate and no W2 bound is below the truth: random problems, every stage, every kind of
 // bound, against simulated paths of the model under the same policy.
 #include <algorithm>
 #include <cmath>
@@ -22,13 +22,13 @@ using namespace testing;
 
 const int kPaths = by_effort(20000, 50000, 100000);
 constexpr int kShards = 8;  // so that the test runner can use several cores
-// Paths whose states are compared with the particles: each coordinate's are sorted.
+// Number of paths compared with the particles: each coordinate is sorted.
 constexpr int kSorted = 10000;
 
 int problem_count() { return by_effort(504, 504, 10000); }
 
-/// Clopper–Pearson: the truth is below this with a probability of at most 1e-3 in any of all
-/// comparisons together; 7 kinds and 8 stages a problem are the most there can be.
+/// Clopper–Pearson: the probability that the truth is below this in any of all comparisons together
+/// is at most 1e-3; there are at most 7 kinds of bounds and 8 stages per problem.
 double lower_limit(int successes) {
   const double significance = 1e-3 / (7.0 * 8.0 * problem_count());
   if (successes == 0) return 0.0;
@@ -36,14 +36,14 @@ double lower_limit(int successes) {
                                                                      significance);
 }
 
-/// What the comparisons of a shard came to.
+/// Results of the comparisons of a shard.
 struct Tally {
   int stages = 0;
   int informative = 0;   // truth in 1e-3 … 0.5
   int nontrivial = 0;    // certificate below one there
-  int late_closed = 0;   // the same, at stages from 2 on of closed loops
-  int conditioned = 0;   // C5 is the least, below 0.9 times C1 … C4
-  int thesis_below = 0;  // the thesis's value is certainly below the truth
+  int late_closed = 0;   // of these, at stages from 2 on in closed loop
+  int conditioned = 0;   // of these, with C5 the least and below 0.9 times C1 … C4
+  int thesis_below = 0;  // the thesis's value is significantly below the truth
   int finite_w2 = 0;
   int bodies = 0;  // nontrivial certificates of bodies with discs off their position
   std::map<std::string, int> systems;  // nontrivial certificates by system
@@ -107,7 +107,7 @@ void check_problem(const Problem& problem, const std::string& name, Generator& g
     if (UnsafeSet(problem.settings.safe_set).reach() > 0.0) ++tally.bodies;
   }
   EXPECT_GE(horizon_bound(certificates), lower_limit(truth.any)) << name;
-  // With the effort for control they are bounds, too, and little larger.
+  // With the effort used for control they are also bounds, and little larger.
   const std::vector<StageCertificate> quick = certify(motion, problem.settings.safe_set, budgets);
   const SafeSet& safe_set = problem.settings.safe_set;
   const auto discs = std::max<std::size_t>(1, safe_set.body.discs.size());
@@ -130,8 +130,9 @@ TEST_P(Bounds, are_never_below_the_simulated_truth) {
     const Problem problem = random_problem(generator);
     check_problem(problem, problem.system + " " + std::to_string(index), generator, tally);
   }
-  // The problems can tell a bound from a number that is none: many truths are neither rare nor
-  // certain, many certificates say something there, and the thesis's value is caught.
+  // The problems can distinguish a bound from a mere number: many truths are neither rare nor
+  // certain, many certificates are non-trivial there, and the thesis's value is detected as too
+  // low.
   EXPECT_GT(tally.informative, tally.stages / 5);
   EXPECT_GT(tally.nontrivial, tally.informative / 2);
   EXPECT_GT(tally.late_closed, 0);

@@ -1,5 +1,5 @@
-// A confidence sequence holds at all numbers of trials at once, and so at that of a rule that looks
-// at what happened.
+// A confidence sequence holds at all numbers of trials simultaneously, and therefore under
+// data-dependent stopping.
 #include "harness/statistics/confidence_sequence.hpp"
 
 #include <cmath>
@@ -16,8 +16,8 @@ constexpr std::int64_t kTrials = 3000;
 constexpr int kRuns = 4000;
 constexpr double kConfidence = 0.9;
 
-/// How many events of n trials speak against a probability: fewer than `least`, or more than
-/// `most`.
+/// The event counts in n trials that are incompatible with a probability: fewer than `least`, or
+/// more than `most`.
 struct Compatible {
   std::int64_t least = 0;
   std::int64_t most = 0;
@@ -38,7 +38,7 @@ std::vector<Compatible> compatible_counts(double probability) {
   return all;
 }
 
-/// The share of runs in which the interval misses `probability` at any number of trials.
+/// The share of runs in which the interval misses `probability` at some number of trials.
 double missed_at_some_time(double probability) {
   const std::vector<Compatible> compatible = compatible_counts(probability);
   std::mt19937_64 random(17);
@@ -58,7 +58,7 @@ double missed_at_some_time(double probability) {
 }
 
 TEST(ConfidenceSequenceCoverage, misses_at_some_time_at_most_as_often_as_it_says) {
-  // Four standard deviations of the share of kRuns.
+  // Four standard errors of the share of kRuns.
   const double room = 4.0 * std::sqrt(kConfidence * (1.0 - kConfidence) / kRuns);
   for (const double probability : {0.002, 0.02, 0.2, 0.5, 0.97}) {
     EXPECT_LE(missed_at_some_time(probability), 1.0 - kConfidence + room) << probability;
@@ -66,14 +66,14 @@ TEST(ConfidenceSequenceCoverage, misses_at_some_time_at_most_as_often_as_it_says
 }
 
 TEST(ConfidenceSequenceCoverage, is_not_wider_than_it_needs_to_be) {
-  // Of 0.1 that it may miss over all times, it misses some hundredths within kTrials.
+  // It may miss in 0.1 of the runs over all times; within kTrials it misses in some hundredths.
   for (const double probability : {0.02, 0.2, 0.5}) {
     EXPECT_GE(missed_at_some_time(probability), 0.02) << probability;
   }
 }
 
 TEST(ConfidenceSequenceCoverage, an_interval_for_a_fixed_number_does_not_hold_at_all_numbers) {
-  // What the sequence is for: looked at again and again, Clopper and Pearson's misses far more
+  // Why the sequence is needed: under repeated looks, the Clopper–Pearson interval misses far more
   // often.
   std::mt19937_64 random(17);
   constexpr int kFewRuns = 300;

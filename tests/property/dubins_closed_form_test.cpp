@@ -1,4 +1,4 @@
-// The closed form that planners are held against is itself held against simulated paths and
+// The closed form that serves as the planners' reference, checked against simulated paths and
 // against cases that can be written down by hand.
 #include "tests/support/dubins_closed_form.hpp"
 
@@ -23,7 +23,7 @@ Eigen::Matrix3d correlated(double x, double y, double heading) {
   return root * root.transpose();
 }
 
-/// Everything correlated with everything, weights with mixed terms.
+/// All coordinates correlated, weights with mixed terms.
 DubinsProblem general_problem() {
   Eigen::Matrix3d state;
   state << 6.0, 1.0, -0.5, 1.0, 4.0, 0.7, -0.5, 0.7, 2.0;
@@ -56,7 +56,7 @@ struct Statistic {
   }
 };
 
-// 6 stages of 9 moments and a cost: beyond 4.5 standard errors once in 3,000 seeds.
+// 6 stages with 9 moments and a cost: exceeds 4.5 standard errors once in 3,000 seeds.
 constexpr double kStandardErrors = 4.5;
 constexpr int kPaths = 1000000;
 
@@ -165,7 +165,7 @@ TEST(DubinsOptimum, is_just_below_the_least_of_a_fine_grid_of_inputs) {
     }
   }
   EXPECT_LE(optimum.cost, least);
-  // The grid's nearest point is at most 0.05 away in every input, where the cost is flat.
+  // The grid's nearest point is within 0.05 in every input, where the cost is flat.
   EXPECT_GE(optimum.cost, 0.999 * least);
   EXPECT_EQ(optimum.cost, dubins_cost(problem, optimum.inputs).total());
   EXPECT_TRUE((optimum.inputs.array().abs() <= 2.0).all());

@@ -21,7 +21,7 @@ using controller::SafeSet;
 
 namespace {
 
-/// Norms of order 2, 4 and 8 of a variable, for coordinates that are these multiples of it.
+/// Norms of orders 2, 4 and 8, for coordinates that are `size` times a scalar with `norms`.
 ModelError scaled_norms(const Eigen::VectorXd& size, const std::array<double, 3>& norms) {
   ModelError error = controller::model_error_of_size(norms[0] * size);
   error.higher[0] = norms[1] * size;
@@ -29,7 +29,7 @@ ModelError scaled_norms(const Eigen::VectorXd& size, const std::array<double, 3>
   return error;
 }
 
-/// From every point the shortest way to the unsafe set; infinite where there is none.
+/// From every point the shortest vector to the unsafe set; infinite where there is none.
 Points ways_to_unsafe(const SafeSet& safe_set, const Points& points) {
   std::vector<Box> parts;
   std::vector<controller::ConvexPart> shapes;
@@ -72,7 +72,8 @@ Points ways_to_unsafe(const SafeSet& safe_set, const Points& points) {
   return ways;
 }
 
-/// −1 or 1 in each coordinate: where the nearest part of the unsafe set is from every point.
+/// −1 or 1 in each coordinate: the direction from every point to the nearest part of the unsafe
+/// set.
 Points towards_unsafe(const SafeSet& safe_set, const Points& points) {
   return ways_to_unsafe(safe_set, points).unaryExpr([](double way) {
     return way < 0.0 ? -1.0 : 1.0;
@@ -89,7 +90,7 @@ ErringPlant biased(const Eigen::VectorXd& size, Generator& generator) {
           }};
 }
 
-/// Waves in a coordinate of the state: at most `size`.
+/// Waves in one coordinate of the state, bounded by `size`.
 ErringPlant wavy(const Eigen::VectorXd& size, Generator& generator) {
   const double phase = uniform(generator, 0.0, 6.0);
   const double number = uniform(generator, 0.5, 10.0);
@@ -103,7 +104,7 @@ ErringPlant wavy(const Eigen::VectorXd& size, Generator& generator) {
           }};
 }
 
-/// Always the whole size, always to where it is worst.
+/// Always of full size, always in the worst direction.
 ErringPlant hostile(const Eigen::VectorXd& size, const SafeSet& safe_set) {
   return {.kind = "hostile",
           .norms = scaled_norms(size, {1.0, 1.0, 1.0}),
@@ -112,7 +113,7 @@ ErringPlant hostile(const Eigen::VectorXd& size, const SafeSet& safe_set) {
           }};
 }
 
-/// Rarely, but then by far and to where it is worst.
+/// Rarely, but then large and in the worst direction.
 ErringPlant jumping(const Eigen::VectorXd& size, const SafeSet& safe_set, Generator& generator) {
   const double share = uniform(generator, 0.01, 0.2);
   const double jump = 1.0 / std::sqrt(share);  // of root mean square one
@@ -128,10 +129,10 @@ ErringPlant jumping(const Eigen::VectorXd& size, const SafeSet& safe_set, Genera
           }};
 }
 
-/// A hidden state that the noises so far have moved, h⁺ = keep h + w, pushes on in every period.
+/// A hidden state driven by the past noises, h⁺ = keep h + w, adds to the error in every period.
 ErringPlant dragging(double strength, const Eigen::MatrixXd& noise, Generator& generator) {
   const double keep = uniform(generator, 0.5, 0.95);
-  // h is Gaussian, and at most as wide as it is in the end.
+  // h is Gaussian, and its deviation never exceeds the stationary one.
   const Eigen::VectorXd size =
       strength * noise.diagonal().cwiseMax(0.0).cwiseSqrt() / std::sqrt(1.0 - keep * keep);
   return {.kind = "dragging",
@@ -143,7 +144,7 @@ ErringPlant dragging(double strength, const Eigen::MatrixXd& noise, Generator& g
           }};
 }
 
-/// Student's t of ten degrees of freedom, turned to where it is worst.
+/// Student's t with ten degrees of freedom, in the worst direction.
 ErringPlant heavy_tailed(const Eigen::VectorXd& size, const SafeSet& safe_set,
                          Generator& generator) {
   constexpr double kFreedom = 10.0;
@@ -164,8 +165,8 @@ ErringPlant heavy_tailed(const Eigen::VectorXd& size, const SafeSet& safe_set,
           }};
 }
 
-/// None, but close to the unsafe set, into which it leads; a correlation with all noises so far
-/// that nothing must be smoothed over.
+/// Zero, except close to the unsafe set, where it leads into it: a dependence on all past noises
+/// that a certificate must not smooth away.
 PlantError lurking_error(const Eigen::VectorXd& reach, const SafeSet& safe_set) {
   return [=](const PlantMoment& moment) {
     Points error = ways_to_unsafe(safe_set, moment.stepped);
@@ -177,13 +178,14 @@ PlantError lurking_error(const Eigen::VectorXd& reach, const SafeSet& safe_set) 
   };
 }
 
-/// Its norms: those of what is `reach` with the probability of any error, of which simulated paths
-/// give an upper limit, and else zero.
+/// Its norms: those of a variable that equals `reach` with the probability of any error (an upper
+/// limit from simulated paths) and is zero otherwise.
 ErringPlant lurking(const PredictedMotion& motion, const SafeSet& safe_set,
                     const Eigen::VectorXd& reach, const SampledShare& sampled,
                     Generator& generator) {
   const PlantError error = lurking_error(reach, safe_set);
-  Eigen::VectorXd most = Eigen::VectorXd::Zero(reach.size());  // paths, at any moment
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(reach.size());  // number of paths with an error,
+                                                               // maximum over the moments
   const PlantError counted = [&](const PlantMoment& moment) {
     const Points one = error(moment);
     most = most.cwiseMax((one.array() != 0.0).cast<double>().rowwise().sum().matrix());

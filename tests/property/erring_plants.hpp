@@ -1,4 +1,4 @@
-// Plants whose error is of known norms and otherwise as bad as it gets.
+// Worst-case plants whose error has known norms.
 #pragma once
 
 #include <string>
@@ -10,31 +10,32 @@
 
 namespace qsmpc::testing {
 
-/// A plant's error and what is known of it. The norms hold at every moment, or those of a period at
-/// its moments, whatever happened.
+/// A plant's error and its known norms. The norms hold at every moment (period-specific ones at the
+/// moments of that period), conditional on any past.
 struct ErringPlant {
   std::string kind;
   controller::ModelError norms;
   PlantError error;
 };
 
-/// How probabilities that no formula gives are taken from simulated paths.
+/// How probabilities without a closed form are estimated from simulated paths.
 struct SampledShare {
   int paths = 0;
-  double (*upper_limit)(int successes) = nullptr;  ///< of the probability, after so many of them
+  double (*upper_limit)(int successes) = nullptr;  ///< of the probability, given `successes` among
+                                                   ///< `paths`
 };
 
-/// A plant of a random kind: with a bias, with waves, driven towards the unsafe set, jumping there,
-/// heavy-tailed, with a memory of the noise, or lurking by the unsafe set. Over the horizon its
-/// error adds up to between 0.03 and three times what the state deviates from its mean. Refers to
-/// `generator`.
+/// A plant of a random kind: a bias, waves, driven towards the unsafe set, jumping there,
+/// heavy-tailed, with a memory of the noise, or lurking next to the unsafe set. Over the horizon
+/// its error adds up to between 0.03 and three times the standard deviation of the state. Keeps a
+/// reference to `generator`.
 [[nodiscard]] ErringPlant random_plant(const Problem& problem,
                                        const controller::PredictedMotion& motion,
                                        const SampledShare& sampled, Generator& generator);
 
-/// `plant`, whose norms hold whatever its error did before, with errors of another size about an
-/// offset in each of the first periods of a drive, and small ones later. Its stages begin with
-/// period `begin`.
+/// `plant`, whose norms hold whatever its past errors, with errors of different size about an
+/// offset in each of the first periods of a drive, and small ones later. Its stages start at period
+/// `begin`.
 [[nodiscard]] ErringPlant setting_out(ErringPlant plant, Eigen::Index begin, Generator& generator);
 
 }  // namespace qsmpc::testing

@@ -21,7 +21,7 @@ double marginal_w2(const controller::DiscreteMeasure& particles, const controlle
   std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
     return particles.locations(axis, a) < particles.locations(axis, b);
   });
-  // The monotone coupling: particles in order take the draws in order, by their weights.
+  // The monotone coupling: sorted particles take sorted draws according to their weights.
   const double each = 1.0 / static_cast<double>(sorted.size());
   double squares = 0.0;
   double left = each;

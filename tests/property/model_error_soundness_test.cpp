@@ -1,6 +1,6 @@
-// Certificates that are given a model error hold for plants that have it: random problems, plants
-// whose error is of known norms and otherwise as bad as it gets, every stage, every kind of bound,
-// against simulated paths of the plant under the same policy.
+// Certificates with a given model error hold for plants that have it: random problems, worst-case
+// plants whose error has known norms, every stage, every kind of bound, against simulated paths of
+// the plant under the same policy.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -24,14 +24,14 @@ namespace model_error_soundness_test {
 
 using namespace testing;
 const int kPaths = by_effort(10000, 25000, 50000);
-// Paths whose states are compared with the particles: each coordinate's are sorted.
+// Number of paths compared with the particles: each coordinate is sorted.
 constexpr int kSorted = 10000;
 constexpr int kShards = 8;  // so that the test runner can use several cores
 
 int problem_count() { return by_effort(320, 320, 4000); }
 
-/// Clopper–Pearson: the truth is below this with a probability of at most 1e-3 in any of all
-/// comparisons together; 7 kinds and 8 stages a problem are the most there can be.
+/// Clopper–Pearson: the probability that the truth is below this in any of all comparisons together
+/// is at most 1e-3; there are at most 7 kinds of bounds and 8 stages per problem.
 double lower_limit(int successes) {
   const double significance = 1e-3 / (7.0 * 8.0 * problem_count());
   if (successes == 0) return 0.0;
@@ -39,14 +39,14 @@ double lower_limit(int successes) {
                                                                      significance);
 }
 
-/// The truth is above this with such a probability.
+/// The truth exceeds this with the same probability.
 double upper_limit(int successes) {
   const double significance = 1e-3 / (7.0 * 8.0 * problem_count());
   return boost::math::binomial_distribution<>::find_upper_bound_on_p(kPaths, successes,
                                                                      significance);
 }
 
-/// Forgets, in one of three cases each, the norms of order 8 or all but the mean square.
+/// With probability one third each, drops the norms of order 8, or all but the root mean square.
 ModelError as_known(ModelError norms, Generator& generator) {
   for (ModelError& own : norms.first) own = as_known(own, generator);
   const int forgotten = std::uniform_int_distribution<int>(0, 2)(generator);
@@ -55,15 +55,15 @@ ModelError as_known(ModelError norms, Generator& generator) {
   return norms;
 }
 
-/// What the comparisons of a shard came to.
+/// Results of the comparisons of a shard.
 struct Tally {
   int stages = 0;
   int informative = 0;  // truth in 1e-3 … 0.5
   int nontrivial = 0;   // certificate below one half there
   int finite_w2 = 0;
-  int violated = 0;        // problems in which certificates that know no model error are wrong
-  int setting_out = 0;     // problems with a plant that errs by other norms at first
-  int violated_later = 0;  // of these, in which certificates that know the later norms alone are
+  int violated = 0;        // problems in which certificates without the model error are wrong
+  int setting_out = 0;     // problems with a plant whose error has other norms at first
+  int violated_later = 0;  // of these, in which certificates with only the later norms are wrong
   std::map<std::string, int> violated_by;
 };
 
@@ -87,7 +87,7 @@ void compare_w2(const StageBudget& budget, const DiscreteMeasure& particles, con
   }
 }
 
-/// Certificates that take the norms of later periods for those of all.
+/// Certificates that use the norms of later periods for all periods.
 std::vector<StageCertificate> later_certificates(PredictedMotion motion, const SafeSet& safe_set) {
   ModelError later = *motion.model_error;
   later.first.clear();
@@ -110,7 +110,7 @@ void check_problem(const Problem& problem, const std::string& name, Generator& g
   }
   ErringPlant plant =
       random_plant(problem, motion, {.paths = kPaths, .upper_limit = upper_limit}, generator);
-  // What lurks counts on where its own error has led.
+  // The norms of a lurking plant were estimated with its own error acting.
   if (plant.kind != "lurking" && uniform(generator, 0.0, 1.0) < 0.5) {
     plant = setting_out(plant, motion.first_period, generator);
   }
@@ -162,10 +162,10 @@ TEST_P(ModelErrorBounds, hold_for_plants_with_the_error) {
     const Problem problem = random_problem(generator);
     check_problem(problem, problem.system + " " + std::to_string(index), generator, tally);
   }
-  // The plants can tell a certificate that knows of them from one that does not.
+  // The plants can distinguish a certificate with the model error from one without.
   EXPECT_GT(tally.violated, 0);
   EXPECT_GT(tally.violated_by.size(), 1U);
-  // And one that knows what the plant does at first from one that does not.
+  // And one with the norms of the first periods from one without.
   EXPECT_GT(tally.violated_later, 0);
   EXPECT_GT(tally.informative, tally.stages / 5);
   EXPECT_GT(tally.nontrivial, 0);

@@ -1,5 +1,5 @@
-// A plan costs hardly more than the best policy: of the exact cost where that is known, of the cost
-// on simulated paths elsewhere.
+// A plan costs hardly more than the best policy: by exact cost where it is known, elsewhere by the
+// cost on simulated paths.
 #include "tests/support/planning_quality.hpp"
 
 #include <cctype>
@@ -24,7 +24,7 @@ TEST_P(OpenLoopPlan, costs_hardly_more_than_the_exact_optimum) {
   RecordProperty("more", std::to_string(shortfall.absolute()));
   RecordProperty("best", std::to_string(shortfall.best));
   EXPECT_LE(shortfall.absolute(), allowed) << "of " << shortfall.best;
-  // Of an optimum, nothing can cost less.
+  // Nothing costs less than an optimum.
   EXPECT_GE(shortfall.absolute(), -1e-10 * shortfall.best);
 }
 
@@ -48,7 +48,7 @@ TEST_P(ClosedLoopPlan, costs_hardly_more_than_the_best_policy_that_was_found) {
   EXPECT_LE(shortfall.relative(), kAllowed)
       << "planned " << shortfall.planned << ", best " << shortfall.best << "\nplanned inputs "
       << shortfall.plan.policy.inputs << "\nbest inputs    " << shortfall.best_inputs;
-  // The search starts from the plan, too: it ends at most a sampling error above it.
+  // The search also starts from the plan: it ends at most a sampling error above it.
   EXPECT_GE(shortfall.relative(), -kAllowed) << "the search is not one";
 }
 

@@ -1,4 +1,4 @@
-// The sampled prices that plans are held against: right values, right gradients, real minima.
+// The sampled prices that are the planners' reference: correct values and gradients, true minima.
 #include "tests/support/policy_search.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ Eigen::MatrixXd wavy_inputs(int rows, int horizon) {
   });
 }
 
-/// The price's own gradient beside central differences of the price.
+/// Compares the analytic gradient of the price with central differences.
 void expect_slope(SampledProblem& problem, const Eigen::MatrixXd& inputs) {
   constexpr double kStep = 1e-5;
   Eigen::MatrixXd gradient(inputs.rows(), inputs.cols());
@@ -34,7 +34,7 @@ void expect_slope(SampledProblem& problem, const Eigen::MatrixXd& inputs) {
     differences.data()[i] = (above - problem.evaluate(moved)) / (2.0 * kStep);
     moved.data()[i] = inputs.data()[i];
   }
-  // Paths that reach a kink of clamp or penalty within the step: few, and it is short.
+  // The few paths that reach a kink of clamp or penalty within the short step.
   EXPECT_LT((gradient - differences).norm(), 1e-4 * gradient.norm()) << gradient << "\n\n"
                                                                      << differences;
 }
@@ -76,7 +76,7 @@ TEST(SampledProblem, prices_an_open_loop_as_the_closed_form_does) {
   SampledProblem problem(*car, settings, belief, {.paths = 200000, .seed = 5});
   const Eigen::MatrixXd inputs = wavy_inputs(1, 12);
   const double exact = dubins_cost(closed_form_of(settings, belief), inputs).total();
-  // 15 % of standard deviation over 200,000 paths: four standard errors.
+  // A standard deviation of 15 % over 200,000 paths: four standard errors.
   EXPECT_NEAR(problem.evaluate(inputs), exact, 1.3e-3 * exact);
 }
 

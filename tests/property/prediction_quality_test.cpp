@@ -1,5 +1,5 @@
-// A prediction with 100 points is nearer to the law that it stands for than 100 Monte Carlo
-// samples are, at every step.
+// A prediction with 100 points is closer to the law that it stands for than 100 Monte Carlo
+// samples, at every step.
 #include "tests/support/prediction_quality.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace prediction_quality_test {
 
 using namespace testing;
 
-// Of seven disjoint triples of seeds, the worst has 0.623.
+// The worst of seven disjoint triples of seeds has 0.623.
 constexpr double kSquaredRatio = 0.68;
 
 class PredictionQuality : public ::testing::TestWithParam<Eigen::Vector3d> {};

@@ -29,7 +29,7 @@ bool chance(Generator& generator, double probability) {
   return uniform(generator, 0.0, 1.0) < probability;
 }
 
-/// Between 10^low and 10^high, evenly in the logarithm.
+/// Between 10^low and 10^high, uniform in the logarithm.
 double log_uniform(Generator& generator, double low, double high) {
   return std::pow(10.0, uniform(generator, low, high));
 }
@@ -39,7 +39,8 @@ Eigen::VectorXd uniform_vector(Generator& generator, Eigen::Index size, double l
   return Eigen::VectorXd::NullaryExpr(size, [&] { return uniform(generator, lower, upper); });
 }
 
-/// Correlated, with deviations between 10^low and 10^high; sometimes one coordinate is known.
+/// Correlated, with deviations between 10^low and 10^high; sometimes one coordinate is exactly
+/// known.
 Eigen::MatrixXd random_covariance(Generator& generator, Eigen::Index dim, double low, double high) {
   const Eigen::MatrixXd root =
       Eigen::MatrixXd::NullaryExpr(dim, dim, [&] { return uniform(generator, -1.0, 1.0); });
@@ -58,7 +59,7 @@ Eigen::MatrixXd random_covariance(Generator& generator, Eigen::Index dim, double
   return 0.5 * (covariance + covariance.transpose());
 }
 
-/// What is particular to a system: where it starts, and which coordinates walls stand in.
+/// What is specific to a system: its initial states, and the coordinates with walls.
 struct Family {
   std::string system;
   models::ParameterMap parameters;
@@ -110,8 +111,8 @@ controller::Box everywhere(Eigen::Index dim) {
           .upper = Eigen::VectorXd::Constant(dim, kInfinity)};
 }
 
-/// Bounds just beyond the extent of `path`, some of them left out, and obstacles beside it; all by
-/// the size of `spread`, about what the state deviates from the path.
+/// Bounds just beyond the extent of `path`, some of them omitted, and obstacles beside it; all
+/// scaled by `spread`, roughly the deviation of the state from the path.
 controller::SafeSet random_safe_set(Generator& generator, const Family& family,
                                     const Eigen::MatrixXd& path, const Eigen::VectorXd& spread) {
   controller::SafeSet safe_set = controller::unbounded_safe_set(path.rows());
@@ -149,7 +150,7 @@ Eigen::Matrix2Xd corners_of(std::initializer_list<Eigen::Vector2d> points) {
   return corners;
 }
 
-/// A polygon on a circle of radius 1, which is convex.
+/// A polygon inscribed in the unit circle, hence convex.
 Eigen::Matrix2Xd random_convex(Generator& generator) {
   const int count = uniform_int(generator, 3, 7);
   Eigen::Matrix2Xd corners(2, count);
@@ -161,7 +162,7 @@ Eigen::Matrix2Xd random_convex(Generator& generator) {
   return corners;
 }
 
-/// Of a size between a tenth of `spread` and twice as much.
+/// Of a size between a tenth of `spread` and twice `spread`.
 controller::PlanarShape random_shape(Generator& generator, const std::string& kind,
                                      const Eigen::Vector2d& centre, const Eigen::Vector2d& spread) {
   const double size = spread.mean();
@@ -187,7 +188,7 @@ controller::PlanarShape random_shape(Generator& generator, const std::string& ki
   return controller::PolygonShape{.corners = corners};
 }
 
-/// A winding road of some six spreads about a place beside the path.
+/// A winding road, 3 to 10 times `size` wide, around a place beside the path.
 std::shared_ptr<const controller::RoadWalls> random_road(Generator& generator,
                                                          const Eigen::Vector2d& about,
                                                          double size) {
@@ -236,7 +237,7 @@ controller::SafeSet random_shapes(Generator& generator, const std::string& kind,
   return safe_set;
 }
 
-/// A way that covers some `reach` within `duration`, and never stands still.
+/// A way that covers about `reach` within `duration` and never stands still.
 models::IntendedWay random_way(Generator& generator, const Eigen::Vector2d& from, double reach,
                                double duration) {
   const auto velocity = [&]() -> Eigen::Vector2d {
@@ -263,7 +264,7 @@ models::ObstacleMotion random_motion(Generator& generator, const Eigen::Vector2d
     motion.ways.back().probability = 1.0 / count;
   }
   if (chance(generator, 0.15)) {
-    motion.ways.resize(1);  // that is certain
+    motion.ways.resize(1);  // a certain way
     motion.ways.front().probability = 1.0;
     return motion;
   }
@@ -279,7 +280,7 @@ models::ObstacleMotion random_motion(Generator& generator, const Eigen::Vector2d
   return motion;
 }
 
-/// Lets the shapes move, by about what they are away from the path.
+/// Makes the shapes move, about as far as they are away from the path.
 void set_in_motion(Generator& generator, const Eigen::VectorXd& spread, int horizon,
                    controller::SafeSet& safe_set) {
   auto forecast = std::make_shared<controller::ObstacleForecast>(safe_set.obstacles.size());
@@ -293,8 +294,8 @@ void set_in_motion(Generator& generator, const Eigen::VectorXd& spread, int hori
   safe_set.forecast = std::move(forecast);
 }
 
-/// Up to four discs of the size of `spread`, or a point; off the position where the system has a
-/// heading.
+/// Up to four discs of the size of `spread`, or a point; the discs are off the position if the
+/// system has a heading.
 controller::Body random_body(Generator& generator, const Family& family,
                              const Eigen::VectorXd& spread) {
   const bool plane = family.walls.size() == 3;
@@ -310,7 +311,7 @@ controller::Body random_body(Generator& generator, const Family& family,
   return body;
 }
 
-/// The propagator and its points; few where each would take long.
+/// The propagator and its points; few points where each is expensive.
 void random_propagation(Generator& generator, controller::PlannerSettings& settings) {
   const double which = uniform(generator, 0.0, 1.0);
   settings.propagator = which < 0.35   ? "mixture"
@@ -347,7 +348,7 @@ void random_policy(Generator& generator, Problem& problem) {
 
 namespace {
 
-/// shapes: where given, obstacles are of this kind, and may move.
+/// shapes: if given, obstacles are of this kind, and may move.
 Problem random_problem_of(Generator& generator, const Family& family,
                           std::unique_ptr<const models::Dynamics> dynamics,
                           const std::string& shapes = "", bool move = false) {
@@ -381,7 +382,7 @@ Problem random_problem_of(Generator& generator, const Family& family,
   return problem;
 }
 
-/// Either system, by equations or in C++.
+/// One of the two systems, by equations or in C++.
 Family random_own_family(Generator& generator) {
   const std::string how = chance(generator, 0.5) ? "" : "_by_equations";
   if (chance(generator, 0.5)) {
@@ -419,7 +420,7 @@ namespace {
 Problem random_planar_problem(Generator& generator, const std::string& kind, bool move) {
   Family family;
   do family = random_family(generator);
-  while (family.walls.size() < 3);  // those that have a plane
+  while (family.walls.size() < 3);  // families with a plane
   return random_problem_of(generator, family,
                            models::make_dynamics(family.system, family.parameters, kTimeStep), kind,
                            move);

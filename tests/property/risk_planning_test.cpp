@@ -1,5 +1,5 @@
-// The planner against an exhaustive grid: where the grid has a plan that is certified with room to
-// spare, the planner returns one that is certified and about as cheap.
+// The planner against an exhaustive grid: where the grid has a plan that is certified with a
+// margin, the planner returns a certified plan of about the same cost.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -18,7 +18,7 @@ namespace risk_planning_test {
 using namespace testing;
 
 constexpr int kShards = 4;
-// Of the limit, what the grid's plan may use.
+// The share of the limit that the grid's plan may use.
 constexpr double kRoom = 0.95;
 
 int problem_count() { return by_effort(60, 120, 500); }
@@ -125,7 +125,7 @@ TEST_P(LimitedPlans, are_certified_and_cost_what_the_best_on_a_grid_does) {
   RecordProperty("binding", binding);
   RecordProperty("median", std::to_string(median));
   RecordProperty("worst", std::to_string(excess.back()));
-  // A single problem in a shard may be missed.
+  // Allows one missed problem per shard.
   EXPECT_LE(missed, std::max(1, solvable / 100));
   EXPECT_GT(binding, solvable / 10);
   EXPECT_LE(median, 0.003);

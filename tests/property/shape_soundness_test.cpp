@@ -1,6 +1,5 @@
-// Certificates among shapes of the plane, standing and moving, are bounds, and tight: random
-// problems, every stage, every kind of bound, against simulated paths of the model under the same
-// policy.
+// Certificates among planar shapes, static and moving, are bounds, and tight: random problems,
+// every stage, every kind of bound, against simulated paths of the model under the same policy.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -22,12 +21,12 @@ using namespace testing;
 
 const int kPaths = by_effort(10000, 20000, 100000);
 
-/// Of each kind.
+/// For each kind of shape.
 int problem_count() { return by_effort(96, 96, 1680); }
 
-/// Clopper–Pearson: the truth is below this with a probability of at most 1e-3 in any of all
-/// comparisons together; 7 kinds of bounds and 8 stages a problem are the most there can be, of
-/// shapes that stand and of those that move.
+/// Clopper–Pearson: the probability that the truth is below this in any of all comparisons together
+/// is at most 1e-3; there are at most 7 kinds of bounds and 8 stages per problem, with static and
+/// with moving shapes.
 double lower_limit(int successes) {
   const double comparisons =
       2.0 * 7.0 * 8.0 * problem_count() * static_cast<double>(shape_kinds().size());
@@ -40,7 +39,7 @@ struct Tally {
   int stages = 0;
   int informative = 0;         // truth in 1e-3 … 0.5
   int nontrivial = 0;          // certificate below one there
-  std::vector<double> ratios;  // of certificate and truth there, open loop
+  std::vector<double> ratios;  // ratios of certificate to truth there, open loop
 };
 
 void compare(const StageCertificate& certificate, int unsafe_paths, const std::string& where) {

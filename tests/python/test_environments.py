@@ -104,7 +104,7 @@ def test_a_vector_environment_is_its_environments_one_by_one(planar, threads):
             assert (terminated[n], truncated[n]) == (ended, cut)
             assert infos["certified"][n] == info["certified"]
     assert truncated.all()
-    # The next step begins anew, without a reward.
+    # The next step starts a new episode, without a reward.
     seens, rewards, terminated, truncated, infos = envs.step(actions)
     assert not rewards.any() and not truncated.any() and not terminated.any()
     assert np.abs(seens).max() < 1.0

@@ -100,7 +100,7 @@ def test_the_planner_as_a_python_object_knows_obstacles_that_move():
     assert len(stages) == 7
     assert np.trace(stages[6][0].covariance) > np.trace(stages[0][0].covariance)
     assert len(told[0][5][3]) == 2 and sum(way.weight for way in told[0][5][3]) == pytest.approx(1)
-    # Without a situation it plans with what is known before anything is seen.
+    # Without a situation it plans with the prior knowledge, before any observation.
     plan = qsmpc.Planner(square).decide()
     assert plan.certificates["value"][-1] < 0.01
 
@@ -116,7 +116,7 @@ def test_arrays_have_a_period_as_a_row(small):
     assert episode.certificates["value"].shape == (steps, stages)
     points, weights = episode.particles(3, 2)
     assert points.shape == (20, 3) and weights.sum() == pytest.approx(1.0)
-    # The plan begins at the belief, and its first input at what is seen.
+    # The plan starts from the belief, and its first input applies to the observed state.
     np.testing.assert_allclose(episode.plan_states[4, 0], episode.belief_means[4])
     gap = episode.observations[4] - episode.plan_states[4, 0]
     expected = episode.plan_inputs[4, 0] + episode.plan_gains[4, 0] @ gap

@@ -77,8 +77,8 @@ def test_casadi_has_no_clearance_that_is_too_large(name, problem_of):
     episode = qsmpc.run(name, seed=1)
     found = problem.clearance(episode.states.T).full().ravel()
     assert (found <= episode.clearances + 1e-12).all()
-    # Of a disc's centre at a corner, the larger of two distances is nearer than Euclid's by a share
-    # of 1 − 1/√2 at most; and where two sides are as near, distances are rounded.
+    # For a disc's centre at a corner, the larger of two distances is smaller than the Euclidean one
+    # by at most a share of 1 − 1/√2; and where two sides are equally near, distances are rounded.
     radius = max((disc["radius"] for disc in problem.message["footprint"]), default=0.0)
     allowed = (1.0 - 0.5**0.5) * (episode.clearances + radius) + 2.0 * ROUNDING
     assert (found >= episode.clearances - allowed).all()

@@ -132,7 +132,7 @@ def test_rerun_draws_the_trace(episode, rrd):
     np.testing.assert_allclose(points("belief/mean")[:, :2], episode.belief_means[:, :2], **near)
     plans = points("plan", "LineStrips3D:strips")
     np.testing.assert_allclose(plans[:, :, :2], episode.plan_states[:, :, :2], **near)
-    # 95 % of a normal distribution of two dimensions are within this Mahalanobis distance.
+    # 95 % of a two-dimensional normal distribution is within this Mahalanobis distance.
     ellipses = points("belief/ellipse", "LineStrips3D:strips")
     for k, ellipse in enumerate(ellipses):
         apart = ellipse[:, :2] - episode.belief_means[k, :2]
@@ -142,7 +142,7 @@ def test_rerun_draws_the_trace(episode, rrd):
         )
     boxes = rrd["/world/map/obstacles Boxes3D:centers"][1][0]
     np.testing.assert_allclose(np.array(boxes)[:, :2], [[3, 3], [7, 6.5]])
-    assert rrd["/world/vehicle/body LineStrips3D:strips"][0] is None  # stands still in its frame
+    assert rrd["/world/vehicle/body LineStrips3D:strips"][0] is None  # constant in its frame
 
 
 def test_particles_are_those_of_each_stage(episode, rrd, mcap):
@@ -196,7 +196,7 @@ def test_mcap_draws_the_trace(episode, mcap):
     ]
     np.testing.assert_allclose(corners, [[2, 2], [6, 5]])
     assert len(entity("/map/walls")["lines"]) == 4
-    # The body is drawn where its frame is, about all of its discs.
+    # The body is drawn at its frame, around all of its discs.
     body = entity("/vehicle")
     assert body["frame_locked"] and body["frame_id"] == mcap["/tf"][0][1]["child_frame_id"]
     outline = np.array([[p["x"], p["y"]] for line in body["lines"] for p in line["points"]])

@@ -1,4 +1,4 @@
-// A made-up trace gets what the reader and the episodes give to real ones.
+// Completes a made-up trace with what the reader and the episodes add to real ones.
 #pragma once
 
 #include <utility>
@@ -9,7 +9,7 @@
 
 namespace qsmpc::testing {
 
-/// `trace` with the description of its scenario's system and the residuals of its periods.
+/// `trace` with its scenario's system description and the residuals of its periods filled in.
 [[nodiscard]] inline harness::Trace described(harness::Trace trace) {
   const auto model = harness::model_of(trace.scenario);
   trace.system = model->description();

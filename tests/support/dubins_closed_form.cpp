@@ -84,8 +84,8 @@ double quadratic(const DubinsMoments& moments, const Eigen::MatrixXd& weight,
   return weight.cwiseProduct(about_target).sum();
 }
 
-/// The cost and its gradient by central differences. The cost is analytic, so that they are good to
-/// 1e-9 of it.
+/// The cost, and its gradient by central differences. The cost is analytic, so the gradient is
+/// accurate to 1e-9 of it.
 double cost_and_gradient(const DubinsProblem& problem, const std::vector<double>& inputs,
                          std::vector<double>& gradient) {
   constexpr double kStep = 1e-4;  // rad/s; error of third order, rounding 1e-16 / 1e-4

@@ -1,11 +1,12 @@
-// The exact expected cost of the Dubins car in open loop, and the inputs that make it least.
+// The exact expected cost of the Dubins car in open loop, and the inputs that minimise it.
 //
 //   x⁺ = x + s cos φ + w_x,  y⁺ = y + s sin φ + w_y,  φ⁺ = φ + T u + w_φ
 //
-// with s the reach of a period, from a Gaussian, under Gaussian noise. The headings of all stages
-// and the positions' own noise are jointly Gaussian, so that the first two moments of the state are
-// finite sums of E e^{iaφ}, E e^{i(aφ_j + bφ_l)} and E g e^{iaφ}, each known exactly. No particle,
-// no sample: what a planner reaches can be held against this. Without obstacles and penalties.
+// with s the distance covered in a period, from a Gaussian belief, under Gaussian noise. The
+// headings of all stages and the positions' own noise are jointly Gaussian, so the first two
+// moments of the state are finite sums of E e^{iaφ}, E e^{i(aφ_j + bφ_l)} and E g e^{iaφ}, each
+// known exactly. No particles, no samples: a reference for the planner's results. No obstacles, no
+// penalties.
 #pragma once
 
 #include <vector>
@@ -27,18 +28,18 @@ struct DubinsProblem {
   controller::InputBounds bounds;  ///< of the yaw rate
 };
 
-/// E xᵀ and E x xᵀ of the state at one stage.
+/// E x and E x xᵀ of the state at one stage.
 struct DubinsMoments {
   Eigen::Vector3d mean;
   Eigen::Matrix3d second;
 };
 
-/// Stages 0 … inputs.cols() under the yaw rates `inputs` (1 x horizon), which are applied as they
-/// are.
+/// Moments at stages 0 … inputs.cols() under the yaw rates `inputs` (1 x horizon), applied
+/// unclamped.
 [[nodiscard]] std::vector<DubinsMoments> dubins_moments(
     const DubinsProblem& problem, const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
-/// J of docs/theory/planning.md without penalties, exactly: the parts state, input and terminal.
+/// J of docs/theory/planning.md without penalties, exactly: its state, input and terminal parts.
 [[nodiscard]] controller::CostParts dubins_cost(const DubinsProblem& problem,
                                                 const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
@@ -47,8 +48,8 @@ struct DubinsOptimum {
   double cost = 0.0;
 };
 
-/// The least of `dubins_cost` over the bounds: the best that SLSQP finds from `starts` starts, the
-/// constant inputs at the bounds and at zero and random ones, each to the last digits.
+/// The minimum of `dubins_cost` within the bounds: the best result of SLSQP from `starts` starts
+/// (constant inputs at the bounds and at zero, and random ones), each run to the last digits.
 [[nodiscard]] DubinsOptimum dubins_optimum(const DubinsProblem& problem, int horizon,
                                            int starts = 20);
 

@@ -1,7 +1,7 @@
-// How much a test draws or drives where more finds more.
+// Sample sizes and run lengths of tests that find more errors the longer they run.
 //
-// Sanitizers make everything about ten times slower, and find errors of memory in few samples as
-// well as in many: statistics are for the builds without them.
+// Sanitizers slow everything down about tenfold and find memory errors in few samples as well as in
+// many; statistics are left to the builds without them.
 #pragma once
 
 #include <cstdlib>
@@ -10,8 +10,8 @@
 
 namespace qsmpc::testing {
 
-/// `all` where scripts/test is called with --slow, `few` where a sanitizer watches, else `usual`;
-/// with both, `usual`.
+/// `all` when scripts/test runs with --slow, `few` under a sanitizer, else `usual`; `usual` if both
+/// apply.
 template <class Number>
 [[nodiscard]] Number by_effort(Number few, Number usual, Number all) {
   const bool slow = std::getenv("QSMPC_SLOW_TESTS") != nullptr;

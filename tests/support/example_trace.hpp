@@ -1,5 +1,4 @@
-// Made-up traces with the shapes of real ones, the same on every call, for tests of what reads
-// traces.
+// Made-up traces with the shapes of real ones, identical on every call, for tests of trace readers.
 #pragma once
 
 #include <cmath>
@@ -20,7 +19,7 @@ struct ExampleTraceOptions {
   std::string name = "example";
 };
 
-/// Numbers in (-1, 1) that only depend on how many were drawn.
+/// Numbers in (-1, 1) that depend only on how many were drawn before.
 class ExampleNoise {
  public:
   double operator()() {
@@ -32,7 +31,7 @@ class ExampleNoise {
   std::uint64_t state_ = 42;
 };
 
-/// A text in double quotes as YAML escapes it.
+/// A text as a double-quoted YAML string, with escapes.
 inline std::string yaml_quoted(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -102,7 +101,7 @@ inline void add_example_plan(harness::StepRecord& step, const harness::Scenario&
                             .total = bound * 1.2,
                             .lipschitz = 1.0 + bound});
     if (s > 0) {
-      // Every entry another number: a transposed copy would show.
+      // All entries differ, so a transposed copy would show.
       step.plan_gains.emplace_back(noise() * Eigen::RowVector3d(1.0, -2.0, 3.0));
       const double value = std::exp(-9.0 + static_cast<double>(s) + 2.0 * noise());
       step.certificates.push_back(
@@ -149,8 +148,8 @@ inline harness::StepRecord example_step(const harness::Scenario& scenario,
   return step;
 }
 
-/// A drive of a Dubins car towards the target, with `options.steps` steps and two motion samples a
-/// step; the plant turns a little less than the model says.
+/// A drive of a Dubins car towards the target, with `options.steps` steps and two motion samples
+/// per step; the plant turns slightly less than the model predicts.
 inline harness::Trace example_trace(const ExampleTraceOptions& options = {}) {
   harness::Trace trace;
   trace.scenario = harness::parse_scenario(example_scenario(options));

@@ -1,4 +1,4 @@
-// Executors that run tasks as unkindly as they may: results must not depend on them.
+// Executors with adversarial task order and concurrency: results must not depend on them.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ inline void run_backwards(int count, controller::TaskRef task) {
   for (int n = count - 1; n >= 0; --n) task(n);
 }
 
-/// Three threads take tasks as they come.
+/// Three threads that take tasks in turn.
 inline void run_on_threads(int count, controller::TaskRef task) {
   constexpr int kThreads = 3;
   std::atomic<int> next{0};

@@ -16,7 +16,7 @@ Eigen::Vector2d place_on(const models::IntendedWay& way, double time) {
   return points.back().place + (time - points.back().time) * way.onward;
 }
 
-/// Of a way that never stands still.
+/// For a way that never stands still.
 double heading_on(const models::IntendedWay& way, double time) {
   const Eigen::Vector2d chord =
       place_on(way, time + 0.5) - place_on(way, time < 0.5 ? 0.0 : time - 0.5);

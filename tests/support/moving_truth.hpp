@@ -1,4 +1,4 @@
-// Where obstacles that move are, simulated by means of its own: what forecasts are held against.
+// Positions of moving obstacles by an independent simulation: the reference for forecasts.
 #pragma once
 
 #include <random>
@@ -10,27 +10,27 @@
 
 namespace qsmpc::testing {
 
-/// Many runs of one motion, side by side.
+/// Many runs of one motion in parallel.
 class MovingTruth {
  public:
-  /// They begin as the motion says; time_step: of a period, s.
+  /// Runs start as `motion` specifies; time_step: one period, s.
   MovingTruth(models::ObstacleMotion motion, double time_step, int runs,
               std::mt19937_64& generator);
 
-  /// One period on, all of them.
+  /// Advances all runs by one period.
   void advance(std::mt19937_64& generator);
 
-  /// How far run `i` is from where it is written, m, and turned, rad.
+  /// Deviation of run `i` from its written position, m, and heading, rad.
   [[nodiscard]] Eigen::Vector2d offset(int i) const;
   [[nodiscard]] double turn(int i) const;
-  /// Which way it goes.
+  /// Index of the way that run `i` takes.
   [[nodiscard]] std::size_t way(int i) const { return runs_[static_cast<std::size_t>(i)].way; }
 
  private:
   struct Run {
     std::size_t way = 0;
     double off[2] = {0.0, 0.0};   // along and across
-    double rate[2] = {0.0, 0.0};  // of these
+    double rate[2] = {0.0, 0.0};  // rate of change of `off`, same axes
   };
 
   models::ObstacleMotion motion_;

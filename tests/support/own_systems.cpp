@@ -2,7 +2,7 @@
 
 #include <vector>
 
-// As users compile them, but into this program.
+// The source as users compile it, but included in this program.
 #include "examples/lag_unicycle/lag_unicycle.cpp"
 #include "examples/planar_quadrotor/planar_quadrotor.cpp"
 
@@ -108,7 +108,7 @@ std::unique_ptr<const models::Dynamics> make_any_dynamics(const std::string& nam
 
 namespace {
 
-/// A user's system as one of the program's own.
+/// A user's system as a built-in one.
 template <class Model, int kStates, int kInputs>
 struct BuiltIn : Model {
   static constexpr int kStateDim = kStates;

@@ -11,7 +11,7 @@
 
 namespace qsmpc::testing {
 namespace {
-// The rules of the split (mixture_split.cpp).
+// The constants of the split (mixture_split.cpp).
 constexpr double kLeastRatio = 2.0;
 constexpr double kMostRatio = 16.0;
 constexpr double kNoSpread = 1e-14;
@@ -34,7 +34,7 @@ double below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 double density(double z) { return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi); }
 double times_density(double z) { return std::isinf(z) ? 0.0 : z * density(z); }
 
-/// Does not cancel in the tails.
+/// P(z in the interval), without cancellation in the tails.
 double probability_of(const Interval& z) {
   return z.lower > 0.0 ? below(-z.lower) - below(-z.upper) : below(z.upper) - below(z.lower);
 }
@@ -56,7 +56,7 @@ struct Piece {
 struct Cell {
   std::vector<Piece> pieces;
   double mass = 0.0;
-  int axis = -1;  // to be split along; −1: not to be split
+  int axis = -1;  // axis to split along; −1: not to be split
   double at = 0.0;
   double spread = 0.0;
   std::uint32_t key = 0;
@@ -134,8 +134,9 @@ class PlainSplit {
     return std::bit_cast<std::uint32_t>(static_cast<float>(spread)) >> kDroppedBits;
   }
 
-  /// Cuts all cells that spread a fraction of what the most spread one does, until their pieces do
-  /// not, within bounds; of those that are too many for what is left, the most spread ones once.
+  /// Splits all cells whose spread exceeds a fraction of the largest spread, until their pieces
+  /// fall below it, within limits. If there are more such cells than remaining splits, only the
+  /// widest ones are split, once each.
   bool cut_round() {
     const auto left = static_cast<std::size_t>(limit_) - cells_.size();
     const Cell* widest = nullptr;
@@ -158,12 +159,12 @@ class PlainSplit {
       round.resize(left);
       std::sort(round.begin(), round.end());
     }
-    // From the last to the first, so that places stay what they are.
+    // Backwards, so that the remaining indices stay valid.
     std::for_each(round.rbegin(), round.rend(), [&](std::size_t n) { refine(n, least, most); });
     return true;
   }
 
-  /// Cuts cell `n` and its pieces, the lower ones first, into at most `most`.
+  /// Splits cell `n` and its pieces, lower ones first, into at most `most` cells.
   void refine(std::size_t n, std::uint32_t least, std::size_t most) {
     std::size_t pieces = 1;
     for (std::size_t at = n; at < n + pieces; ++at) {
@@ -172,7 +173,7 @@ class PlainSplit {
     }
   }
 
-  /// Where the piece is cut: at the cell's mean, or not at all if a part were too small.
+  /// Where to cut the piece: at the cell's mean, or not at all if one part would be too small.
   [[nodiscard]] double cut_of(const Piece& piece, int axis, double at) const {
     const Interval own = piece.box[axis];
     const double away = at - positions_(axis, piece.source);
@@ -187,7 +188,7 @@ class PlainSplit {
     return lower >= upper ? own.upper : own.lower;
   }
 
-  /// Leaves the lower half in the cell's place, and the upper one after it. False if one is empty.
+  /// The lower half replaces the cell and the upper half follows it. False if either is empty.
   bool split(std::size_t index) {
     const Cell& cell = cells_[index];
     Cell lower;
@@ -258,7 +259,7 @@ class PlainSplit {
   Eigen::MatrixXd axes_;
   Eigen::VectorXd deviations_;
   Eigen::VectorXd centre_;
-  Eigen::MatrixXd positions_;  // of the sources about their mean, in the noise's axes
+  Eigen::MatrixXd positions_;  // of the sources relative to their mean, in the noise's axes
   double second_moment_ = 0.0;
   std::vector<Cell> cells_;
 };

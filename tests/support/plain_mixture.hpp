@@ -1,6 +1,6 @@
-// The mixture split of controller/measure/compression/mixture_split.hpp, written as plainly as it
-// can be: one struct a piece of a source, one loop over the pieces a sum, the standard library's
-// erfc and exp. Tests hold the fast one against it.
+// The mixture split of controller/measure/compression/mixture_split.hpp in its plainest form: one
+// struct per piece of a source, one loop over the pieces per sum, the standard library's erfc and
+// exp. Tests compare the fast implementation with it.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace qsmpc::testing {
 
-/// The part of one source that is in one cell.
+/// The part of one source that lies in one cell.
 struct PlainPart {
   int source = 0;
   double mass = 0.0;
@@ -30,8 +30,8 @@ struct PlainMixture {
   double w2 = 0.0;
 };
 
-/// The mixture of N(sources.col(i), covariance) with `weights`, cut into at most `cells` cells, a
-/// source into at most `parts` parts.
+/// The mixture of N(sources.col(i), covariance) with `weights`, split into at most `cells` cells,
+/// each source into at most `parts` parts.
 [[nodiscard]] PlainMixture plain_split(const Eigen::MatrixXd& covariance, int cells, int parts,
                                        const controller::Points& sources,
                                        const Eigen::VectorXd& weights);

@@ -27,7 +27,7 @@ ValueAndSlope squared_hinge(double m, double s) {
   return {(m * m + s * s) * inside + m * s * density, m * inside + s * density};
 }
 
-/// By the distance and by the deviation.
+/// Derivatives by the distance and by the deviation.
 struct ExpectedHinge {
   double value = 0.0;
   double slope = 0.0;
@@ -56,7 +56,7 @@ bool bounded(const controller::Box& box, Eigen::Index axis) {
   return std::isfinite(box.lower[axis]) || std::isfinite(box.upper[axis]);
 }
 
-/// Negative inside; `outward` is its gradient.
+/// Signed distance to the box, negative inside; `outward` is its gradient.
 double outward_distance(const Eigen::VectorXd& x, const controller::Box& box,
                         Eigen::VectorXd& outward) {
   const Eigen::VectorXd nearest = x.cwiseMax(box.lower).cwiseMin(box.upper);

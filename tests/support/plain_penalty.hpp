@@ -10,18 +10,19 @@
 
 namespace qsmpc::testing {
 
-/// Refers to both arguments.
+/// Keeps references to both arguments.
 class PlainPenalty {
  public:
   PlainPenalty(const controller::SafeSet& safe_set, const controller::Penalty& penalty)
       : safe_set_(safe_set), penalty_(penalty) {}
 
-  /// Of one particle, without its weight; adds the gradient to `slope`.
+  /// Penalty of one particle, without its weight; adds the gradient to `slope`.
   PenaltyValue operator()(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const;
 
-  /// Of the bounds, for particles (d x n) that stand for normal laws of these deviations; 0 for the
-  /// printed shape, which has them above. Overwrites the slopes by the particles (d x n) and by the
-  /// deviations (d) with those of the weighted sum.
+  /// Penalty of the bounds, for particles (d x n) that stand for normal laws with these deviations;
+  /// 0 for the thesis's penalty, whose operator() includes the bounds. Overwrites `slopes` (d x n)
+  /// and `deviation_slopes` (d) with the derivatives of the weighted sum by the particles and by
+  /// the deviations.
   double of_bounds(const Eigen::MatrixXd& x, const Eigen::VectorXd& weights,
                    const Eigen::VectorXd& deviations, Eigen::MatrixXd& slopes,
                    Eigen::VectorXd& deviation_slopes) const;

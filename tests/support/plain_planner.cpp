@@ -37,7 +37,7 @@ Eigen::VectorXd input_at(const controller::Policy& policy, Eigen::Index k,
   return input;
 }
 
-/// 1 − θ² of what particles stand for (docs/theory/planning.md).
+/// 1 − θ² of the laws that particles stand for (docs/theory/planning.md).
 double lost_share(Eigen::Index count, Eigen::Index dim) {
   const double width =
       1.5 / std::pow(static_cast<double>(count), 1.0 / static_cast<double>(dim + 4));
@@ -58,15 +58,15 @@ std::vector<Eigen::VectorXd> moved(const std::vector<PlainDestination>& map,
   return result;
 }
 
-/// The map of one stage, and the weights that it leads to.
+/// The map of one stage, and the resulting weights.
 struct Taken {
   std::vector<PlainDestination> map;
   std::vector<double> weights;
   double w2 = 0.0;
 };
 
-/// Moves the destinations to where the linear map of least cost from the covariance of the cells'
-/// means to the mixture's puts these means.
+/// Moves the destinations: the optimal linear transport map from the covariance of the cells' means
+/// to that of the mixture, applied to these means.
 void displace(const PlainMixture& mixture, Taken& taken) {
   const Eigen::Index dim = mixture.cells[0].mean.size();
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(dim);
@@ -122,14 +122,14 @@ Taken take_up_noise(const std::vector<Eigen::VectorXd>& stepped, const std::vect
   return taken;
 }
 
-/// One stage on the way forward.
+/// One stage of the forward pass.
 struct Stage {
   std::vector<Eigen::VectorXd> states;
   std::vector<Eigen::VectorXd> inputs;
   std::vector<std::vector<bool>> clamped;
   std::vector<Eigen::VectorXd> stepped;
-  std::vector<Eigen::VectorXd> penalty_slope;  // of weighted penalties
-  std::vector<Eigen::VectorXd> bound_slope;    // of weighted penalties of the bounds, at `stepped`
+  std::vector<Eigen::VectorXd> penalty_slope;  // of the weighted penalties
+  std::vector<Eigen::VectorXd> bound_slope;    // of the weighted bound penalties, at `stepped`
 };
 
 class PlainHorizon {
@@ -159,7 +159,7 @@ class PlainHorizon {
     return prediction_.stages[k][i].weight;
   }
 
-  /// W and factor of the state's cost at stage k: ½ xᵀQx, and xᵀPx at the end.
+  /// W and factor of the state cost at stage k: ½ xᵀQx, and xᵀPx at the end.
   [[nodiscard]] const Eigen::MatrixXd& form(Eigen::Index k) const {
     return k == horizon_ ? terms_.cost.terminal : terms_.cost.state;
   }
@@ -173,7 +173,7 @@ class PlainHorizon {
     part(k == horizon_ ? "terminal" : "state") += value;
   }
 
-  /// Of the points before noise and compression, with what the noise adds.
+  /// Cost of the points before noise and compression, plus the noise's contribution.
   void price_states(Eigen::Index k, const std::vector<Eigen::VectorXd>& points,
                     const Eigen::MatrixXd& lost, Eigen::Index weights_of) {
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -207,8 +207,8 @@ class PlainHorizon {
     }
   }
 
-  /// Of what the stepped particles stand for: m + θ (f_i − m), and a normal law of the variance
-  /// σ² + (1 − θ²) v (expected_bounds.hpp).
+  /// Bound penalties of the laws that the stepped particles stand for: mean m + θ (f_i − m),
+  /// variance σ² + (1 − θ²) v (expected_bounds.hpp).
   void evaluate_bounds(Eigen::Index k, const PlainPenalty& penalty) {
     Stage& stage = stages_[k];
     const auto count = static_cast<Eigen::Index>(stage.stepped.size());
@@ -290,8 +290,8 @@ class PlainHorizon {
     return of_stepped;
   }
 
-  /// Returns the adjoints of the states; replaces that of the next nominal state by that of stage
-  /// k's.
+  /// Returns the adjoints of the states; replaces the adjoint of the next nominal state by that of
+  /// stage k.
   std::vector<Eigen::VectorXd> through_step(Eigen::Index k,
                                             const std::vector<Eigen::VectorXd>& of_stepped,
                                             Eigen::VectorXd& of_nominal) {

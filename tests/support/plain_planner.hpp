@@ -1,6 +1,6 @@
-// Prediction and expected cost along a horizon, written as plainly as they can be: a struct a
-// particle, loops over particles, dense sums, scalar code. Tests hold prediction.hpp and
-// horizon_cost.hpp against it.
+// Prediction and expected cost along a horizon in their plainest form: one struct per particle,
+// loops over particles, dense sums, scalar code. Tests compare prediction.hpp and horizon_cost.hpp
+// with it.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ struct PlainParticle {
   double weight = 0.0;
 };
 
-/// Where one particle's new place comes from: Σ share · stepped + offset.
+/// A particle's new position is Σ share · stepped + offset.
 struct PlainShare {
   int source = 0;
   double share = 0.0;
@@ -33,10 +33,10 @@ struct PlainPrediction {
   std::vector<std::vector<PlainParticle>> stages;   ///< horizon + 1
   std::vector<std::vector<PlainDestination>> maps;  ///< horizon
   std::vector<double> w2;                           ///< horizon; of the maps
-  bool compressed = true;                           ///< whether the maps do anything
+  bool compressed = true;                           ///< whether the maps change anything
 };
 
-/// How a stage takes up noise: as "mixture" does, or as "noise_free".
+/// How a stage absorbs the noise: as "mixture" does, or as "noise_free".
 struct PlainNoise {
   bool none = false;
   Eigen::MatrixXd covariance;
@@ -52,12 +52,13 @@ struct PlainNoise {
 struct PlainCost {
   controller::CostParts parts;
   Eigen::MatrixXd input_gradient;  ///< input_dim x horizon
-  Eigen::MatrixXd gain_gradient;   ///< input_dim x state_dim; of a ΔK in all gains
+  Eigen::MatrixXd gain_gradient;   ///< input_dim x state_dim; by a ΔK common to all gains
 };
 
-/// The expected cost at the maps of `prediction` if the nominal inputs become `inputs` and all
-/// gains change by `gain_change`, and its gradient by reverse mode. With `optimises_gain` false and
-/// all gains zero the loop counts as open, in which the clamp has the derivative one.
+/// The expected cost with the maps of `prediction` held fixed when the nominal inputs become
+/// `inputs` and all gains change by `gain_change`, and its gradient by reverse mode. With
+/// `optimises_gain` false and all gains zero, the loop counts as open and the clamp has derivative
+/// one.
 [[nodiscard]] PlainCost plain_cost(const controller::HorizonCostTerms& terms,
                                    const PlainPrediction& prediction,
                                    const controller::Policy& policy, const Eigen::MatrixXd& inputs,

@@ -1,4 +1,4 @@
-// How near the planner's policies come to the best ones: figures for tests and benchmarks.
+// How close the planner's policies come to the optimum: figures for tests and benchmarks.
 #pragma once
 
 #include <memory>
@@ -11,23 +11,23 @@
 
 namespace qsmpc::testing {
 
-/// The Dubins car of the default scenario, 100 points everywhere, nothing in its way.
+/// The Dubins car of the default scenario, 100 points at every stage, no obstacles.
 [[nodiscard]] controller::PlannerSettings free_settings(int horizon, bool closed_loop);
 
-/// The same with the walls, the blocks and the penalties of dubins_obstacles, closed loop.
+/// The same with the walls, obstacles and penalties of dubins_obstacles, closed loop.
 [[nodiscard]] controller::PlannerSettings blocks_settings(int horizon);
 
-/// The closed form's problem of these settings, which must be without walls and obstacles.
+/// The closed form's problem for these settings, which must have no walls and no obstacles.
 [[nodiscard]] DubinsProblem closed_form_of(const controller::PlannerSettings& settings,
                                            const controller::Gaussian& belief);
 
 /// The car's model.
 [[nodiscard]] std::unique_ptr<const models::Dynamics> default_car();
 
-/// At (x, y, φ) as at the start of an episode, N(·, 0.01 I).
+/// Belief at (x, y, φ) as at the start of an episode, N(·, 0.01 I).
 [[nodiscard]] controller::Gaussian first_belief(double x, double y, double heading);
 
-/// At (x, y, φ) as in the course of an episode: with the covariance of one step's noise.
+/// Belief at (x, y, φ) as during an episode: the covariance of one step's noise.
 [[nodiscard]] controller::Gaussian later_belief(double x, double y, double heading);
 
 struct Place {
@@ -35,16 +35,16 @@ struct Place {
   controller::Gaussian belief;
 };
 
-/// The start of dubins_obstacles, places along its episodes, some near to the blocks.
+/// The start of dubins_obstacles and places along its episodes, some close to the obstacles.
 [[nodiscard]] std::vector<Place> places_among_blocks();
 
-/// What a plan costs, and what the best policy that was found costs.
+/// Cost of a plan, and cost of the best policy found.
 struct Shortfall {
   double planned = 0.0;
   double best = 0.0;
-  double predicted = 0.0;  ///< what the planner says that its plan costs
-  /// What it says that the best policy costs: above `predicted` where the prediction misleads,
-  /// below where the solver ends too early or in another valley.
+  double predicted = 0.0;  ///< the planner's own cost estimate of its plan
+  /// The planner's cost estimate of the best policy: above `predicted` where the prediction
+  /// misleads, below it where the solver stops too early or in another local minimum.
   double predicted_best = 0.0;
   Eigen::MatrixXd best_inputs;
   controller::Plan plan;
@@ -52,7 +52,7 @@ struct Shortfall {
   [[nodiscard]] double relative() const { return absolute() / best; }
 };
 
-/// By the closed form; open loop, no walls, no obstacles. A first plan, without one before it.
+/// By the closed form; open loop, no walls, no obstacles. For a first plan (no warm start).
 [[nodiscard]] Shortfall exact_shortfall(const controller::PlannerSettings& settings,
                                         const controller::Gaussian& belief);
 
@@ -61,8 +61,8 @@ struct SamplingSettings {
   Draws price{.paths = 20000, .seed = 2};
 };
 
-/// By simulated paths: the search sees other draws than the price. A first plan, without one
-/// before it.
+/// By simulated paths: the search and the evaluation use different draws. For a first plan (no warm
+/// start).
 [[nodiscard]] Shortfall sampled_shortfall(const models::Dynamics& dynamics,
                                           const controller::PlannerSettings& settings,
                                           const controller::Gaussian& belief,

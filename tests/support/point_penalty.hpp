@@ -1,5 +1,5 @@
-// The penalties of planning at the particles of one stage, bounds included, as loops over regions
-// and the printed shapes take them.
+// The planning penalties at the particles of one stage, bounds included, in the form in which loops
+// over regions and the thesis's penalty take them.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@ struct PenaltyValue {
   double obstacle = 0.0;
 };
 
-/// Of the particles of `range`; the gradient is added to `adjoint` (d x n).
+/// Penalty of the particles of `range`; the gradient is added to `adjoint` (d x n).
 [[nodiscard]] PenaltyValue add_penalty(const controller::Points& locations,
                                        const Eigen::VectorXd& weights,
                                        const controller::SafeSet& safe_set,
@@ -24,7 +24,7 @@ struct PenaltyValue {
                                        controller::Points& adjoint,
                                        controller::ParticleRange range);
 
-/// Of all of them.
+/// Penalty of all particles.
 [[nodiscard]] PenaltyValue add_penalty(const controller::Points& locations,
                                        const Eigen::VectorXd& weights,
                                        const controller::SafeSet& safe_set,

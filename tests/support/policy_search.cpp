@@ -14,10 +14,10 @@
 namespace qsmpc::testing {
 namespace {
 
-// Relative difference of prices below which two descents are taken to have ended in one valley.
+// Relative price difference below which two descents count as having reached the same minimum.
 constexpr double kSameMinimum = 5e-4;
 
-/// Draws of N(0, covariance), positive definite, one a column.
+/// Draws of N(0, covariance), positive definite, one per column.
 models::StateBatch normal_draws(const Eigen::MatrixXd& covariance, int count,
                                 std::mt19937_64& generator) {
   std::normal_distribution<double> normal;
@@ -59,7 +59,7 @@ double squares(const models::StateBatch& points, const Eigen::MatrixXd& weight,
   return offset.cwiseProduct(weight * offset).sum();
 }
 
-/// Prices points, and keeps the best, which a search's last one need not be.
+/// Evaluates points and keeps the best, which need not be the last one of a search.
 struct Descent {
   SampledProblem& problem;
   Eigen::MatrixXd best;
@@ -79,8 +79,8 @@ struct Descent {
   }
 };
 
-/// Each input in turn, constant in each half of the horizon, the others at their middle; and random
-/// ones.
+/// Each input in turn, constant in each half of the horizon with the others at mid-range; and
+/// random ones.
 std::vector<Eigen::MatrixXd> search_starts(const controller::PlannerSettings& settings,
                                            const SearchSettings& search) {
   constexpr std::array<double, 3> kShares = {-0.9, 0.0, 0.9};
@@ -278,7 +278,8 @@ void SampledProblem::add_gain_gradient(const Eigen::MatrixXd& inputs,
 Eigen::MatrixXd SampledProblem::descend(const Eigen::MatrixXd& start) {
   constexpr double kTolerance = 1e-8;  // relative, of the price
   constexpr int kEvaluations = 100;    // of one run
-  constexpr int kRuns = 6;             // each from the best point, without the last one's curvature
+  constexpr int kRuns = 6;             // each from the best point, without the curvature of the
+                                       // previous run
   const Eigen::MatrixXd lower = settings_.bounds.lower.replicate(1, start.cols());
   const Eigen::MatrixXd upper = settings_.bounds.upper.replicate(1, start.cols());
   const auto as_vector = [](const Eigen::MatrixXd& matrix) {
@@ -295,7 +296,7 @@ Eigen::MatrixXd SampledProblem::descend(const Eigen::MatrixXd& start) {
       .evaluations = kEvaluations};
   for (int run = 0; run < kRuns; ++run) {
     const double before = descent.least;
-    // It may end at a kink of the clamp or of a penalty; the next run starts afresh.
+    // A run may stop at a kink of the clamp or of a penalty; the next one restarts from there.
     (void)run_slsqp(settings, as_vector(descent.best));
     if (before - descent.least <= kTolerance * descent.least) break;
   }

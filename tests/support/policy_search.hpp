@@ -1,13 +1,13 @@
-// What a policy really costs, and the best policy that patience can find: the planning problem of
-// docs/theory/planning.md with its expectations taken over simulated paths instead of particles.
+// The true cost of a policy, and the best policy that an exhaustive search finds: the planning
+// problem of docs/theory/planning.md with expectations over simulated paths instead of particles.
 //
 //   SampledProblem problem(*car, settings, belief, {.paths = 20000, .seed = 1});
 //   double price = problem.evaluate(plan.policy);
 //
-// The draws are frozen, so that two policies meet the same noise, and the price is a piecewise
-// smooth function of the nominal inputs whose gradient, that of the gains included, is known. It
-// shares the system, the regulator's gains and the policy's form with the planner, and nothing of
-// quantisation, compression, cost, penalty or solver.
+// The draws are frozen, so two policies meet the same noise, and the price is a piecewise smooth
+// function of the nominal inputs with a known gradient, including the part through the gains. It
+// shares the system, the regulator's gains and the form of the policy with the planner, but none of
+// the quantisation, compression, cost, penalty or solver code.
 #pragma once
 
 #include <vector>
@@ -27,19 +27,19 @@ struct Draws {
 class SampledProblem {
  public:
   /// `dynamics` must outlive the problem. Throws std::invalid_argument for the thesis's penalty,
-  /// which is not written out here.
+  /// which is not implemented here.
   SampledProblem(const models::Dynamics& dynamics, const controller::PlannerSettings& settings,
                  const controller::Gaussian& belief, Draws draws);
 
-  /// The mean cost of the paths under `policy`, with whatever gains.
+  /// The mean cost of the paths under `policy`, with arbitrary gains.
   [[nodiscard]] double evaluate(const controller::Policy& policy);
   /// The mean cost of the paths under the policy with these nominal inputs (input_dim x horizon)
-  /// and the gains that belong to them.
+  /// and the corresponding regulator gains.
   [[nodiscard]] double evaluate(const Eigen::MatrixXd& inputs);
-  /// The same and its gradient (overwritten).
+  /// The same, with its gradient (overwritten).
   double evaluate(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient);
 
-  /// A local minimum within the input bounds from `start`, to the last digits that kinks permit.
+  /// A local minimum within the input bounds from `start`, as accurate as kinks permit.
   [[nodiscard]] Eigen::MatrixXd descend(const Eigen::MatrixXd& start);
 
  private:
@@ -66,16 +66,17 @@ class SampledProblem {
 
 struct SearchSettings {
   Draws draws;
-  int coarse_paths = 250;  ///< while valleys are looked for
+  int coarse_paths = 250;  ///< for the first search of local minima
   int random_starts = 4;
   unsigned seed = 1;     ///< of the random starts
-  std::size_t kept = 3;  ///< valleys that are searched on all paths
+  std::size_t kept = 3;  ///< minima that are refined on all paths
 };
 
-/// The ends of long descents. Those on few paths, from inputs that are constant in each half of the
-/// horizon and from random ones, find the valleys; those on all paths, whose ends are returned,
-/// start from `also` and from the best of the former. Which of them is best other draws must say:
-/// the price of two valleys may differ by less than the paths can tell.
+/// The end points of long descents. Descents on few paths, from random inputs and from inputs
+/// constant in each half of the horizon, find the local minima; descents on all paths start from
+/// `also` and from the best of those minima, and their end points are returned. Which one is best
+/// must be decided on other draws: the prices of two minima may differ by less than the sampling
+/// error.
 [[nodiscard]] std::vector<Eigen::MatrixXd> deepest_inputs(
     const models::Dynamics& dynamics, const controller::PlannerSettings& settings,
     const controller::Gaussian& belief, const SearchSettings& search,

@@ -1,5 +1,5 @@
-// How near a prediction of 100 points comes to the law that it stands for, beside 100 Monte Carlo
-// samples: Table 5-1 of the reference thesis.
+// How close a prediction with 100 points comes to the law it stands for, compared with 100 Monte
+// Carlo samples: Table 5-1 of the reference thesis.
 #pragma once
 
 #include <random>
@@ -18,25 +18,24 @@ struct QualityProblem {
   int steps = 9;
 };
 
-/// The particles of steps 0 … `steps`: the Lloyd quantiser of the belief, at most `points` points
-/// at every step, propagated by the propagator of this name with as many noise points.
+/// The particles of steps 0 … `steps`: the Lloyd quantiser of the belief with at most `points`
+/// points at every step, propagated by the propagator of this name with as many noise points.
 [[nodiscard]] std::vector<controller::DiscreteMeasure> quality_prediction(
     const QualityProblem& problem, const std::string& propagator, int points = 100);
 
-/// States of `count` simulated cars at steps 0 … `steps`, all of the same weight. Different
-/// `stream`s of one seed are independent.
+/// States of `count` simulated cars at steps 0 … `steps`, equally weighted. Different `stream`s of
+/// one seed are independent.
 [[nodiscard]] std::vector<controller::DiscreteMeasure> simulated_states(
     const QualityProblem& problem, int count, unsigned seed, unsigned stream);
 
-/// W2² at one step, one entry a seed.
+/// W2² at one step, one entry per seed.
 struct SquaredDistances {
   Eigen::ArrayXd monte_carlo;               ///< of 100 samples
-  std::vector<Eigen::ArrayXd> predictions;  ///< in the order in which they were given
+  std::vector<Eigen::ArrayXd> predictions;  ///< in the order of the arguments
 };
 
-/// The squared distances of `predictions` (each: steps + 1 measures) and of as many Monte Carlo
-/// samples as `samples` to references of `reference` samples, for seeds 0 … `seeds` − 1; one entry
-/// a step.
+/// The squared distances of `predictions` (steps + 1 measures each) and of `samples` Monte Carlo
+/// samples to references of `reference` samples, for seeds 0 … `seeds` − 1; one entry per step.
 struct QualitySettings {
   int seeds = 20;
   int samples = 100;

@@ -1,4 +1,4 @@
-// Waiting for what other processes do, and looking for what is left of them.
+// Waits for other processes and inspects what they leave behind.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace qsmpc::testing {
 
-/// Whether `condition` held within so many seconds, far more than any run needs.
+/// Whether `condition` became true within a time limit far longer than any run needs.
 template <class Condition>
 bool soon(const Condition& condition, int seconds = 30) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
@@ -20,7 +20,7 @@ bool soon(const Condition& condition, int seconds = 30) {
   return true;
 }
 
-/// The whole content of a file; empty where there is none.
+/// The whole content of a file; empty if it does not exist.
 inline std::string text_of(const std::string& path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();
@@ -34,7 +34,7 @@ inline std::string word_of(const std::string& path) {
   return word;
 }
 
-/// Whether process `number` is there and has not ended.
+/// Whether process `number` exists and has not ended.
 inline bool is_process(const std::string& number) {
   const std::string status = text_of("/proc/" + number + "/stat");
   const std::size_t name_end = status.rfind(')');

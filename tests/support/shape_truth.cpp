@@ -37,7 +37,7 @@ struct Nearness {
               ellipse.semi_axes.cwiseProduct(Eigen::Vector2d(std::cos(angle), std::sin(angle))))
           .norm();
     };
-    // In the quadrant of the point there is one minimum.
+    // There is one minimum in the quadrant of the point.
     double low = 0.0;
     double high = 0.5 * std::numbers::pi;
     const auto mirrored = [&](double angle) {
@@ -55,7 +55,7 @@ struct Nearness {
     return distance(mirrored(0.5 * (low + high))) <= reach;
   }
   bool operator()(const controller::PolygonShape& polygon) const {
-    // Even and odd crossings of a ray to the right.
+    // Parity of the crossings of a ray to the right.
     bool inside = false;
     double least = std::numeric_limits<double>::infinity();
     const Eigen::Index count = polygon.corners.cols();

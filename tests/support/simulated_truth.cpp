@@ -15,9 +15,9 @@
 namespace qsmpc::testing {
 namespace {
 
-// Written out once more, so that the truth does not rest on what is tested.
+// Written out again here, so that the reference does not depend on the code under test.
 
-/// Where the disc's centre is, as (x, y), of state i; coordinates that the system lacks are 0.
+/// The disc's centre (x, y) in state i; coordinates that the system lacks are 0.
 Eigen::Vector2d centre_of(const controller::Body& body, const controller::Disc& disc,
                           const controller::Points& states, Eigen::Index i) {
   Eigen::Vector2d centre(body.x >= 0 ? states(body.x, i) : 0.0,
@@ -28,7 +28,7 @@ Eigen::Vector2d centre_of(const controller::Body& body, const controller::Disc& 
   return centre;
 }
 
-/// Whether the box holds a point of the disc, with the other coordinates of state i.
+/// Whether the box contains a point of the disc at the other coordinates of state i.
 bool touches(const controller::Box& box, const controller::Body& body, const controller::Disc& disc,
              const controller::Points& states, Eigen::Index i) {
   const Eigen::Vector2d centre = centre_of(body, disc, states, i);
@@ -55,7 +55,7 @@ bool touches(const controller::RoadWalls& road, const Eigen::Vector2d& centre, d
       });
 }
 
-/// Whether all of the disc is within the bounds, and the other coordinates of state i are.
+/// Whether the whole disc and the other coordinates of state i are within the bounds.
 bool within(const controller::Box& bounds, const controller::Body& body,
             const controller::Disc& disc, const controller::Points& states, Eigen::Index i) {
   const Eigen::Vector2d centre = centre_of(body, disc, states, i);
@@ -68,7 +68,7 @@ bool within(const controller::Box& bounds, const controller::Body& body,
   return true;
 }
 
-/// `point`, of path i, as an obstacle that has moved with it sees it.
+/// `point` in the unmoved frame of an obstacle that has moved as in run i.
 Eigen::Vector2d as_seen_by(const controller::PlanarShape& shape, const MovingTruth& moved,
                            const Eigen::Vector2d& point, int i) {
   const Eigen::Vector2d centre = controller::shape_centre(shape);
@@ -78,7 +78,7 @@ Eigen::Vector2d as_seen_by(const controller::PlanarShape& shape, const MovingTru
                                   std::cos(turn) * arm.y() - std::sin(turn) * arm.x());
 }
 
-/// Of each obstacle; nothing where it stands.
+/// One per obstacle; empty for one that stands still.
 using Movements = std::vector<std::optional<MovingTruth>>;
 
 Movements movements_of(const controller::SafeSet& safe_set, int paths, Generator& generator) {
@@ -115,7 +115,7 @@ bool unsafe(const controller::SafeSet& safe_set, const Movements& movements,
   return false;
 }
 
-/// Draws of N(0, covariance), one a column; the covariance may be singular.
+/// Draws of N(0, covariance), one per column; the covariance may be singular.
 class NormalDraws {
  public:
   explicit NormalDraws(const Eigen::MatrixXd& covariance) {

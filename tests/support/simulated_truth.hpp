@@ -1,4 +1,4 @@
-// The truth that bounds are held against: simulated paths of the model under a plan's policy.
+// The reference for bounds: simulated paths of the model under a plan's policy.
 #pragma once
 
 #include <functional>
@@ -13,31 +13,31 @@ namespace qsmpc::testing {
 
 using Generator = std::mt19937_64;
 
-/// How many paths are unsafe, stage by stage (1 … horizon), and at any stage.
+/// Numbers of unsafe paths at each stage (1 … horizon), and at any stage.
 struct UnsafeCounts {
   std::vector<int> stages;
   int any = 0;
 };
 
-/// What a plant's error may depend on when it comes in at a stage; dim x paths each.
+/// What a plant's error may depend on when it enters at a stage; dim x paths each.
 struct PlantMoment {
-  Eigen::Index stage = 0;  ///< −1: into the belief, for motions with a belief error
+  Eigen::Index stage = 0;  ///< −1: enters the belief, for motions with a belief error
   const controller::Points&
-      stepped;  ///< where the model would be without noise; at −1 the belief's draws
+      stepped;  ///< noise-free successor state of the model; at −1 the draws of the belief
   const controller::Points&
-      last_noise;  ///< that came into the state now; zero before there was any
+      last_noise;  ///< noise that entered the current state; zero before the first
 };
 
-/// What a plant adds to the model at a moment, dim x paths; may keep a memory of earlier ones.
+/// The plant's deviation from the model at a moment, dim x paths; may depend on earlier moments.
 using PlantError = std::function<controller::Points(const PlantMoment&)>;
 
-/// The period with which obstacles that move do so in `simulate`, s.
+/// Period of the obstacles' motion in `simulate`, s.
 inline constexpr double kObstaclePeriod = 0.1;
 
-/// Simulates `paths` paths of x⁺ = f(x, u(x)) + w from the motion's belief under its policy.
-/// Obstacles that move begin to when the motion does, each path with its own of them.
-/// states: where given, receives the states of every stage 1 … horizon (state_dim x paths each).
-/// error: where given, the plant is x⁺ = f(x, u(x)) + e + w.
+/// Simulates `paths` paths of x⁺ = f(x, u(x)) + w from the motion's belief under its policy. Moving
+/// obstacles start with the motion, and each path has its own realisation of them.
+/// states: if given, receives the states of every stage 1 … horizon (state_dim x paths each).
+/// error: if given, the plant is x⁺ = f(x, u(x)) + e + w.
 [[nodiscard]] UnsafeCounts simulate(const controller::PredictedMotion& motion,
                                     const controller::SafeSet& safe_set, int paths,
                                     Generator& generator,

@@ -18,7 +18,7 @@ struct Call {
   std::exception_ptr error{};
 };
 
-/// Nothing may be thrown through NLopt, which is C.
+/// NLopt is C code: exceptions must not pass through it.
 double cost_for_nlopt(unsigned n, const double* x, double* gradient, void* data) {
   Call& call = *static_cast<Call*>(data);
   try {

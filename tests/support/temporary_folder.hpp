@@ -10,7 +10,7 @@
 
 namespace qsmpc::testing {
 
-/// An empty folder that is removed with all that is in it.
+/// An empty folder that is removed on destruction, with its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -30,7 +30,7 @@ class TemporaryFolder {
   [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
   [[nodiscard]] const std::string& path() const { return path_; }
 
-  /// Writes `text` to a file in it and returns its path.
+  /// Writes `text` to a file in the folder and returns its path.
   [[nodiscard]] std::string file(const std::string& name, const std::string& text) const {
     std::ofstream(*this / name, std::ios::binary) << text;
     return *this / name;

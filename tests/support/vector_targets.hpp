@@ -1,4 +1,4 @@
-// Runs vector loops on each instruction set that the processor has, instead of the best alone.
+// Runs vector loops on each instruction set of the processor instead of only the best one.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace qsmpc::testing {
 
-/// While it lives, loops that are chosen at run time are those of one instruction set.
+/// During its lifetime, loops dispatched at run time use this one instruction set.
 class OnTarget {
  public:
   explicit OnTarget(std::int64_t target) { hwy::GetChosenTarget().Update(target); }
@@ -16,12 +16,12 @@ class OnTarget {
   OnTarget& operator=(const OnTarget&) = delete;
   OnTarget(OnTarget&&) = delete;
   OnTarget& operator=(OnTarget&&) = delete;
-  /// The next call chooses the best again.
+  /// Restores the choice of the best instruction set.
   ~OnTarget() { hwy::GetChosenTarget().DeInit(); }
 };
 
-/// The instruction sets that loops are compiled for and this processor has, the best first. More
-/// than one on any processor newer than the least that the build is for.
+/// The instruction sets that loops are compiled for and this processor has, best first. More than
+/// one on any processor newer than the build's baseline.
 inline std::vector<std::int64_t> vector_targets() { return hwy::SupportedAndGeneratedTargets(); }
 
 }  // namespace qsmpc::testing

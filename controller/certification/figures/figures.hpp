@@ -1,4 +1,5 @@
-// What the table of certificate_entries() is made of. What they return refers to the problem.
+// The figures in the table of certificate_entries(). The functions that they return refer to the
+// problem.
 #pragma once
 
 #include "controller/certification/certificate.hpp"
@@ -11,22 +12,23 @@ namespace qsmpc::controller {
 /// C2: the same before the last noise, which stays Gaussian.
 [[nodiscard]] StageFigure mixture_bound(const CertificateProblem& problem);
 
-/// C3: a Gaussian surrogate of the state, with a bound of what separates the two; 1 where nothing
-/// is known of the derivatives.
+/// C3: a Gaussian surrogate of the state, with a bound on their difference; 1 where nothing is
+/// known about the derivatives.
 [[nodiscard]] StageFigure surrogate_bound(const CertificateProblem& problem);
 
 /// C4: the same, smoothed by noise that is independent of this error; never above C3.
 [[nodiscard]] StageFigure smoothed_surrogate_bound(const CertificateProblem& problem);
 
-/// C5: C3 and C4 given where the functionals of the noise are that bend the motion most, summed
-/// over these places; 1 where the motion has a model error, and where C4 leaves little to gain.
+/// C5: C3 and C4 conditioned on those functionals of the noise that make the motion most nonlinear,
+/// summed over a grid of their values; 1 where the motion has a model error, and where C4 leaves
+/// little to gain.
 [[nodiscard]] StageFigure conditioned_bound(const CertificateProblem& problem);
 
-/// What a stage adds to the probability of being unsafe at any so far (first_entry.hpp): the sum
-/// over stages is a bound, this is NOT one.
+/// What a stage adds to the probability of being unsafe at any stage so far (first_entry.hpp): the
+/// sum over the stages is a bound, a single one is NOT.
 [[nodiscard]] StageFigure first_entry_bound(const CertificateProblem& problem);
 
-/// What the thesis would say (published_certificate.hpp): NOT a bound.
+/// The thesis's probability (published_certificate.hpp): NOT a bound.
 [[nodiscard]] StageFigure published_probability(const CertificateProblem& problem);
 
 /// Weight of the particles that are unsafe: NOT a bound.

@@ -8,10 +8,10 @@ namespace qsmpc::controller {
 
 StageFigure particle_bound(const CertificateProblem& problem) {
   return [&problem](std::size_t k, double /*least*/) {
-    // Distances are to where obstacles are expected, and no more.
+    // The distances are to the obstacles' expected places only.
     if (!problem.unsafe().is_certain(static_cast<Eigen::Index>(k) + 1)) return 1.0;
     const StageBudget& budget = problem.budgets()[k + 1];
-    // An error of the state moves no disc by more than this many times as much.
+    // An error of the state moves a disc by at most this many times as much.
     const double lipschitz = problem.unsafe().lipschitz();
     const double nearest =
         worst_case_probability(problem.clearance(k).cwiseMax(0.0) / lipschitz,

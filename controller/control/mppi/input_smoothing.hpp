@@ -1,5 +1,5 @@
-// The Savitzky-Golay filter of planned inputs: each becomes the value, at its own period, of the
-// parabola that fits those about it best.
+// The Savitzky-Golay filter of planned inputs: each is replaced by the value, at its period, of the
+// least-squares parabola through the inputs around it.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,15 +9,15 @@ namespace qsmpc::controller {
 class InputSmoothing {
  public:
   /// half_window: periods to either side; 0 for no filter, or ≥ 2 (through three points the
-  /// parabola is exact). rest: the inputs before the drive, input_dim.
+  /// parabola is exact, so that 1 would not smooth). rest: the inputs before the drive, input_dim.
   InputSmoothing(int half_window, const Eigen::VectorXd& rest);
 
-  /// The inputs before the drive are those at rest again.
+  /// A new drive: all past inputs are those at rest.
   void reset();
-  /// Tells that `input` (input_dim) has been applied.
+  /// Records that `input` (input_dim) has been applied.
   void note_applied(const Eigen::VectorXd& input);
-  /// Filters `inputs` (input_dim x horizon): before them are those that were applied, behind them
-  /// the last is held. Allocates in the first call only.
+  /// Filters `inputs` (input_dim x horizon) in place, padded in front by the inputs applied and
+  /// behind by the last one. Allocates in the first call only.
   void smooth(Eigen::MatrixXd& inputs);
 
  private:

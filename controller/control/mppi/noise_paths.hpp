@@ -1,4 +1,4 @@
-// Noise for rollouts: realisations that every input sequence is rolled out in, or one for each.
+// Noise for rollouts: realisations shared by all input sequences, or one per sequence.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace qsmpc::controller {
 
-/// F with F Fᵀ = a covariance; works one out only where it is another one than before.
+/// F with F Fᵀ = covariance; recomputed only when the covariance has changed.
 class CovarianceRoot {
  public:
   /// covariance: n x n, symmetric positive semidefinite.
@@ -21,12 +21,12 @@ class CovarianceRoot {
   Eigen::MatrixXd root_;
 };
 
-/// What noise is drawn from. Numbers depend on seed and draw alone.
+/// What noise is drawn from. The random numbers depend only on seed and draw.
 struct NoiseDraw {
   const Eigen::MatrixXd& start_root;  ///< F of the belief
   const Eigen::MatrixXd& step_root;   ///< F of the process noise
   std::uint64_t seed = 0;
-  std::uint64_t draw = 0;  ///< counts draws of the drive
+  std::uint64_t draw = 0;  ///< counts the draws of a drive
 };
 
 /// M realisations of the start and of the process noise.
@@ -36,7 +36,8 @@ class NoisePaths {
 
   void draw(const NoiseDraw& from);
   [[nodiscard]] Eigen::Index count() const { return std::ssize(paths_); }
-  /// state_dim x (horizon + 1): what is added to the mean of the belief, and to each step.
+  /// state_dim x (horizon + 1): column 0 is added to the mean of the belief, the others to the
+  /// steps.
   [[nodiscard]] const Eigen::MatrixXd& path(Eigen::Index n) const {
     return paths_[static_cast<std::size_t>(n)];
   }
@@ -46,9 +47,9 @@ class NoisePaths {
   Eigen::MatrixXd normals_;
 };
 
-/// Adds to every column of `states` noise of its own: of the start at stage 0, of the step at
-/// stages 1 … horizon. chunk: the number of the chunk of samples. normals: scratch of the same
-/// size.
+/// Adds an independent noise to each column of `states`: start noise at stage 0, process noise at
+/// stages 1 … horizon. chunk: index of the chunk of samples. normals: scratch of the size of
+/// `states`.
 void add_own_noise(const NoiseDraw& from, int horizon, int stage, int chunk, Points& states,
                    Points& normals);
 

@@ -1,8 +1,9 @@
-// What sampled input sequences cost: the model's path under each, a chunk of samples at a time.
+// The costs of sampled input sequences: rolls out the model under each, a chunk of samples at a
+// time.
 //
-// A path costs the scenario's quadratic cost about the target, as path_cost, and at each stage
-// after the present one the unsafe cost at the body's clearance. What no input changes, the cost of
-// the present state, is left out.
+// The cost of a path is the scenario's quadratic cost about the target, as in path_cost, plus, at
+// each stage after the present one, the unsafe cost at the body's clearance. The cost of the
+// present state, which no input changes, is left out.
 #pragma once
 
 #include <vector>
@@ -19,12 +20,12 @@
 
 namespace qsmpc::controller {
 
-/// One chunk of samples, and what its rollouts work on.
+/// One chunk of samples, and the scratch of its rollouts.
 struct SampleChunk {
   SampleChunk(int place, Eigen::Index samples, Eigen::Index state_dim, Eigen::Index input_dim,
               Eigen::Index horizon);
 
-  int number;     ///< its place among the chunks
+  int number;     ///< its index among the chunks
   Points inputs;  ///< (horizon · input_dim) x count: input j of stage k in row k · input_dim + j
   Points states;  ///< state_dim x count
   Points next;
@@ -39,7 +40,7 @@ struct SampleChunk {
 
 /// The noise of a rollout; none where both are null.
 struct RolloutNoise {
-  const Eigen::MatrixXd* path = nullptr;  ///< the same for all samples, as NoisePaths
+  const Eigen::MatrixXd* path = nullptr;  ///< the same for all samples, as in NoisePaths
   const NoiseDraw* own = nullptr;         ///< drawn for each sample
 };
 
@@ -49,13 +50,13 @@ class Rollouts {
   Rollouts(const models::Dynamics& dynamics, const PlannerSettings& problem,
            const UnsafeCost& unsafe_cost);
 
-  /// From now on rollouts start at `start`, and cost by their distances to the targets of `cost`.
+  /// Sets the start of the rollouts and the targets that their cost is about.
   void place(const Eigen::VectorXd& start, const QuadraticCost& cost);
 
   /// Adds Σ uᵀRu of the chunk's inputs to `totals` (count).
   void add_input_cost(const SampleChunk& chunk, Eigen::ArrayXd& totals) const;
 
-  /// Rolls the chunk's inputs out; `quadratic` and `unsafe` are then what the paths cost.
+  /// Rolls out the chunk's inputs, and sets `quadratic` and `unsafe` to the costs of the paths.
   void roll_out(const RolloutNoise& noise, SampleChunk& chunk) const;
 
  private:
@@ -66,7 +67,7 @@ class Rollouts {
   const models::Dynamics& dynamics_;
   int horizon_;
   Eigen::Index input_dim_;
-  std::vector<QuadraticForm> state_;  // the only one, or of each stage
+  std::vector<QuadraticForm> state_;  // one for all stages, or one per stage
   QuadraticForm input_;
   QuadraticForm terminal_;
   UnsafeSet unsafe_;

@@ -1,5 +1,5 @@
-// The loops over the samples of a chunk that are not the system's, for the processor's widest
-// vectors. No result depends on how wide these are.
+// The loops over the samples of a chunk, except those of the system, for the processor's widest
+// vectors. Results do not depend on the vector width.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,8 @@
 
 namespace qsmpc::controller {
 
-/// How one input of one stage is drawn: u = clamp(nominal + deviation · drift), with the drift that
-/// follows drift ← keep · drift + add · ξ.
+/// How one input of one stage is drawn: u = clamp(nominal + deviation · drift), where drift ← keep
+/// · drift + add · ξ.
 struct InputDraw {
   double nominal = 0.0;
   double deviation = 0.0;
@@ -21,18 +21,18 @@ struct InputDraw {
   double add = 1.0;
 };
 
-/// Replaces `count` standard normal numbers ξ by inputs, and moves their drifts on.
+/// Replaces `count` standard normal numbers ξ by inputs, and updates their drifts.
 void draw_inputs(const InputDraw& draw, Eigen::Index count, double* drift, double* values);
 
 /// totals_i += factor · (x_i − r)ᵀW(x_i − r) for the columns x_i of `points`.
 void add_quadratic(const QuadraticForm& form, double factor, const Eigen::Ref<const Points>& points,
                    Eigen::ArrayXd& totals);
 
-/// Where the centres of a disc are that is not at the position; `centres` is sized by the caller.
+/// The centres of a disc that is offset from the position; `centres` is sized by the caller.
 void place_discs(const DiscPlacement& placement, const Points& states, Points& centres);
 
-/// What a stage costs at a clearance s (m) of the body: `collision` where s ≤ 0, and
-/// `proximity` · h(s / margin) with h of planning/cost/penalty.hpp.
+/// The cost of a stage at a clearance s (m) of the body: `collision` where s ≤ 0, plus `proximity`
+/// · h(s / margin), with h as in planning/cost/penalty.hpp.
 struct UnsafeCost {
   double collision = 0.0;
   double proximity = 0.0;

@@ -8,12 +8,12 @@
 namespace qsmpc::controller {
 namespace {
 
-// By what the temperature is changed until it is known between two values, …
+// Factor of the temperature steps until a bracket is found, …
 constexpr double kBracketStep = 4.0;
-// … at most so often, and how often the ratio of the two is halved then.
+// … the most steps of this search, and how often the bracket is then bisected (geometrically).
 constexpr int kBracketSteps = 60;
 constexpr int kTemperatureHalvings = 8;
-// All samples are never the effective ones at a finite temperature unless they cost the same.
+// Unless all samples cost the same, no finite temperature makes all of them effective.
 constexpr double kLargestShare = 0.99;
 
 }  // namespace
@@ -53,7 +53,7 @@ double effective_temperature(const SampleCosts& samples, double effective,
     finite += 1.0;
   }
   double temperature = sum / finite - least;
-  if (!(temperature > 0.0) || !std::isfinite(temperature)) return 1.0;  // they cost the same
+  if (!(temperature > 0.0) || !std::isfinite(temperature)) return 1.0;  // all cost the same
   const double wanted = std::min(effective, kLargestShare * finite);
   const auto is_hot = [&](double value) {
     return softmin_weights(samples, value, weights) >= wanted;
@@ -79,7 +79,7 @@ double conditional_value_at_risk(std::span<double> values, double level) {
   const std::size_t whole = std::min(values.size() - 1, static_cast<std::size_t>(std::floor(tail)));
   const auto last = values.begin() + static_cast<std::ptrdiff_t>(whole);
   std::nth_element(values.begin(), last, values.end(), std::greater<>());
-  // Sorted, so that the sum does not depend on how elements were selected.
+  // Sorted, so that the sum does not depend on the order that the selection leaves.
   std::sort(values.begin(), last, std::greater<>());
   const double sum = std::accumulate(values.begin(), last, 0.0);
   return (sum + (tail - static_cast<double>(whole)) * *last) / tail;

@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Samples of a task: few enough for their states to stay in the first-level cache.
+// Samples per task: few enough for their states to stay in the L1 cache.
 constexpr Eigen::Index kSampleChunk = 128;
 
 PlannerSettings checked(const models::Dynamics& dynamics, const ControllerSettings& settings) {
@@ -91,7 +91,7 @@ const Decision& SamplingController::decide(const Situation& situation) {
   smoothing_.smooth(policy_.inputs);
   clamp_inputs(policy_.bounds, policy_.inputs);
   nominal_states(dynamics_, situation.belief.mean, policy_.inputs, policy_.states);
-  // Inputs that lead nowhere are no start for the next period.
+  // Inputs whose path is not finite cannot warm-start the next period.
   under_way_ = policy_.states.allFinite();
   if (!under_way_) decision_.status = SolverStatus::kNumericalTrouble;
   decision_.input = policy_.inputs.col(0);
@@ -103,7 +103,7 @@ const Decision& SamplingController::decide(const Situation& situation) {
   return decision_;
 }
 
-/// Inputs and places to start from.
+/// Sets the initial inputs, targets and noise of the period.
 void SamplingController::prepare(const Situation& situation) {
   const Gaussian& belief = situation.belief;
   if (under_way_) {
@@ -144,8 +144,8 @@ SolverStatus SamplingController::improve(Clock::time_point deadline) {
   return SolverStatus::kIterationLimit;
 }
 
-/// Sets `slopes_` to those of γ/λ · uᵀΣ⁻¹v by v: with a(k) = (u(k) − ρ u(k−1)) / ((1 − ρ²) σ²), but
-/// u(0) / σ² at the first stage, they are a(k) − ρ a(k+1).
+/// Sets `slopes_` to the derivative of γ/λ · uᵀΣ⁻¹v by v: with a(k) = (u(k) − ρ u(k−1)) / ((1 − ρ²)
+/// σ²), but a(0) = u(0) / σ² at the first stage, the entries are γ/λ (a(k) − ρ a(k+1)).
 void SamplingController::place_tilt() {
   const double keep = settings_.correlation;
   const Eigen::Index horizon = slopes_.cols();
@@ -179,7 +179,7 @@ void SamplingController::evaluate(Samples& samples) const {
   }
 }
 
-/// The chunk's inputs and their tilts.
+/// Draws the chunk's inputs, and computes their tilts.
 void SamplingController::draw(Samples& samples) const {
   SampleChunk& chunk = samples.chunk;
   const Eigen::Index inputs = slopes_.rows();
@@ -188,7 +188,7 @@ void SamplingController::draw(Samples& samples) const {
                             .stream = models::RandomStream::kSampledInputs,
                             .step = draws_},
                            {chunk.inputs.data(), static_cast<std::size_t>(chunk.inputs.size())});
-  // The nominal inputs are a sample themselves.
+  // The first sample is the nominal inputs themselves.
   if (chunk.number == 0) chunk.inputs.col(0).setZero();
   const double keep = settings_.correlation;
   samples.drift.setZero();
@@ -224,7 +224,8 @@ void SamplingController::evaluate_in_shared_noise(Samples& samples) const {
   }
 }
 
-/// Makes the inputs the weighted mean of the samples. Returns whether any of them has a cost.
+/// Sets the inputs to the weighted mean of the samples. Returns whether any sample has a finite
+/// cost.
 bool SamplingController::take_mean() {
   for (std::size_t n = 0; n < samples_.size(); ++n) {
     const Samples& samples = samples_[n];

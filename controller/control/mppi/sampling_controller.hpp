@@ -1,10 +1,11 @@
-// Model predictive path integral control: the inputs of a period are the mean of many sampled
-// sequences, weighted by what their rollouts cost. "mppi" and "risk_mppi" are made of it.
+// Model predictive path integral control: the inputs of a period are the weighted mean of many
+// sampled sequences, with weights from their rollouts' costs. Implements "mppi" and "risk_mppi".
 //
-// With the inputs u of the last period, one stage later, an iteration draws v = clamp(u + ε),
-// ε ~ N(0, Σ) with Σ's deviations a share of the input range, correlated along the horizon; rolls
-// each sequence out; and makes u = Σ w v with w ∝ exp(−S / λ − γ/λ · uᵀΣ⁻¹v), Algorithm 2 of
-// Williams et al. 2018 (see mppi_settings.hpp). The first sample is u itself.
+// From the inputs u of the last period, shifted by one stage, an iteration draws v = clamp(u + ε),
+// ε ~ N(0, Σ) where the standard deviations in Σ are a share of the input range and ε is correlated
+// along the horizon; rolls out each sequence; and sets u = Σ w v with w ∝ exp(−S / λ − γ/λ ·
+// uᵀΣ⁻¹v), Algorithm 2 of Williams et al. 2018 (see mppi_settings.hpp). The first sample is u
+// itself.
 #pragma once
 
 #include <chrono>
@@ -22,19 +23,19 @@
 
 namespace qsmpc::controller {
 
-/// What the rollouts of a sequence know of the noise, and how they make its cost.
+/// How a sequence's rollouts include noise, and how its cost is computed from them.
 enum class SampleNoise {
   kNone,  ///< one rollout without noise
-  kOwn,   ///< one rollout, in noise of its own
-  /// A rollout in each of M realisations that all sequences share: the mean of the quadratic cost
-  /// and the conditional value at risk of the unsafe cost.
+  kOwn,   ///< one rollout, with its own noise realisation
+  /// One rollout in each of M noise realisations that all sequences share; the cost is the mean of
+  /// the quadratic cost plus the conditional value at risk of the unsafe cost.
   kShared,
 };
 
 class SamplingController final : public Controller {
  public:
   /// `dynamics` must outlive it. Throws std::invalid_argument as check_planner_settings and
-  /// check_mppi_settings.
+  /// check_mppi_settings do.
   SamplingController(const models::Dynamics& dynamics, const ControllerSettings& settings,
                      SampleNoise noise);
 
@@ -47,7 +48,7 @@ class SamplingController final : public Controller {
   void reset(std::uint64_t seed) override;
 
  private:
-  /// A chunk of samples with what is made of their rollouts.
+  /// A chunk of samples and the results of their rollouts.
   struct Samples {
     SampleChunk chunk;
     Points drift;          // of the perturbations, input_dim x count
@@ -69,7 +70,7 @@ class SamplingController final : public Controller {
   PlannerSettings problem_;
   MppiSettings settings_;
   SampleNoise noise_;
-  Eigen::VectorXd rest_;        // the inputs nearest to none
+  Eigen::VectorXd rest_;        // the feasible inputs nearest to zero
   Eigen::VectorXd deviations_;  // of the perturbations
   Rollouts rollouts_;
   CovarianceRoot belief_root_;
@@ -78,14 +79,14 @@ class SamplingController final : public Controller {
   NoisePaths paths_;
   InputSmoothing smoothing_;
   std::vector<Samples> samples_;
-  Eigen::MatrixXd slopes_;  // of the tilt by the inputs, input_dim x horizon
+  Eigen::MatrixXd slopes_;  // derivative of the tilt by the inputs, input_dim x horizon
   Eigen::ArrayXd costs_;    // S
   Eigen::ArrayXd tilts_;    // S
   Eigen::ArrayXd weights_;  // S
   std::uint64_t seed_ = 0;
-  std::uint64_t draws_ = 0;  // of the drive so far
-  bool under_way_ = false;   // whether the inputs are those of the period before
-  QuadraticCost cost_;       // about the target that is nearest to the belief
+  std::uint64_t draws_ = 0;  // number of draws in the drive so far
+  bool under_way_ = false;   // whether the inputs come from the last period
+  QuadraticCost cost_;       // about the target nearest to the belief
   Policy policy_;
   Eigen::MatrixXd shifted_;
   PathCostScratch cost_scratch_;

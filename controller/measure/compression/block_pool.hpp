@@ -1,5 +1,5 @@
-// Memory for many arrays of all sizes that live for a while: what is given back is used again soon,
-// while the processor's caches still hold it.
+// A memory pool for many short-lived arrays of all sizes: returned blocks are reused soon, while
+// they are still in the processor's caches.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace qsmpc::controller {
 
-/// An array of doubles from the beginning of a cache line on, with its own place in a chain.
+/// An array of doubles aligned to a cache line, which is also a node of a linked list.
 struct Block {
   Block* next = nullptr;
   std::size_t lines = 0;  ///< cache lines of data
@@ -21,11 +21,11 @@ struct Block {
 };
 static_assert(sizeof(Block) <= Block::kHeader * sizeof(double));
 
-/// Not for several threads at a time; but a block may be given back to another pool than it is
-/// from, as long as both are reset together.
+/// Not thread-safe; but a block may be given back to a pool other than its own, as long as both are
+/// reset together.
 class BlockPool {
  public:
-  /// Room for `count` doubles, which are whatever they were.
+  /// A block for `count` doubles of unspecified value.
   [[nodiscard]] Block* take(std::size_t count) {
     const std::size_t lines = rounded((count + kLine - 1) / kLine);
     Block*& free = free_[class_of(lines)];
@@ -42,7 +42,7 @@ class BlockPool {
     block->next = free;
     free = block;
   }
-  /// Takes all blocks back.
+  /// Reclaims all blocks.
   void reset() {
     arena_.reset();
     free_.fill(nullptr);

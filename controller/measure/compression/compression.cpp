@@ -11,7 +11,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// The cost falls in every round, so that rounds come to an end; this guards against rounding.
+// The cost falls in every round, so that the rounds terminate; this guards against rounding.
 constexpr int kRoundLimit = 10000;
 
 /// A contiguous range of the permuted points, and the axis along which it spreads most.
@@ -20,9 +20,9 @@ struct Cell {
   int end = 0;
   Eigen::Index axis = 0;
   double mean = 0.0;    // of the axis
-  double spread = 0.0;  // Σ ρ (x − mean)² along the axis: what a split can gain
+  double spread = 0.0;  // Σ ρ (x − mean)² along the axis: the largest gain of a split
 
-  // Ties are broken by position, so that the order of splits is the same everywhere.
+  // Ties are broken by position, so that the order of splits is the same on every platform.
   bool operator<(const Cell& other) const {
     return spread != other.spread ? spread < other.spread : begin > other.begin;
   }

@@ -10,7 +10,7 @@ namespace {
 constexpr double kNoSpread = 1e-14;
 // A side with less than this fraction of its cell's mass is rounding.
 constexpr double kNoMass = 1e-12;
-// A cell whose sources are fewer than this share of its table gets a table of its own.
+// A cell with parts of at most this share of its table's sources gets a table of its own.
 constexpr double kSparse = 0.5;
 constexpr std::size_t kLeastTable = 64;
 
@@ -33,7 +33,7 @@ SourceTable* CellCutter::make_table(const MixtureFrame& frame, std::size_t size)
   Block* const block = pool_.take(doubles_of(sizeof(SourceTable)));
   auto* const table = std::construct_at(reinterpret_cast<SourceTable*>(block->data()));
   table->size = size;
-  // Copies are written in whole vectors, beyond their end.
+  // Copies are written in whole vectors, past their end.
   table->stride = padded_sources(size) + kMixturePadding;
   table->own = block;
   table->users = 1;
@@ -149,7 +149,7 @@ MixtureBox* CellCutter::cut(const MixtureFrame& frame, MixtureBox& box) {
   return &upper;
 }
 
-/// Where few of the table's sources have a part in the box, it goes on with these alone.
+/// If few of the table's sources have a part in the box, gives it a table of only these.
 void CellCutter::give_own_table(const MixtureFrame& frame, MixtureBox& box, std::size_t parts) {
   SourceTable& old = *box.table;
   if (old.size < kLeastTable ||
@@ -178,7 +178,7 @@ void CellCutter::give_own_table(const MixtureFrame& frame, MixtureBox& box, std:
     return edge;
   };
   for (int a = 0; a < frame.dim; ++a) {
-    // Zeros are zeros for any choice of sources.
+    // The edge of zeros serves for any choice of sources.
     const bool uncut = box.intervals[a].lower == frame.nothing;
     copy.to_edges[a][0] = uncut ? nullptr : next_edge();
     copy.to_edges[a][1] = next_edge();

@@ -13,7 +13,7 @@ namespace HWY_NAMESPACE {
 
 using namespace models::HWY_NAMESPACE;
 
-// Stands for 1/0: a source without noise is then on one side or the other.
+// Stands for 1/0: a source without noise is then entirely on one side or the other.
 constexpr double kLargestInverse = 1e300;
 
 /// ∫ over an interval: probability, x and x².

@@ -1,4 +1,4 @@
-// The inner loops of MixtureSplitter, for the processor's widest vectors.
+// The inner loops of MixtureSplitter, vectorised for the processor's widest SIMD instructions.
 #pragma once
 
 #include <array>
@@ -6,12 +6,12 @@
 
 namespace qsmpc::controller {
 
-/// The most dimensions that the loops are made for.
+/// The largest dimension that the loops support.
 inline constexpr int kMixtureDimLimit = 8;
-/// Arrays that the loops work on have room for a multiple of this many entries.
+/// The arrays of the loops are padded to a multiple of this many entries.
 inline constexpr std::size_t kMixturePadding = 8;
 
-/// For every source, what its coordinate x = y + σ z, z standard normal, has up to an edge:
+/// Partial moments of every source's coordinate x = y + σ z, z standard normal, up to an edge:
 /// probability, ∫ x and ∫ x², in three arrays that are `stride` apart.
 using MixtureEdge = const double*;
 
@@ -21,7 +21,8 @@ struct MixtureInterval {
   MixtureEdge upper = nullptr;
 };
 
-/// Sums over the parts in a cell: mass, and by axis ∫ x and ∫ x², all times the sources' weights.
+/// Sums over the parts in a cell: mass, and by axis ∫ x and ∫ x², all weighted by the sources'
+/// weights.
 struct MixtureMoments {
   double mass = 0.0;
   std::array<double, kMixtureDimLimit> first{};
@@ -42,20 +43,20 @@ struct MixtureCut {
   double* edge = nullptr;    ///< receives the new edge: 3 x stride
 };
 
-/// What a split leaves below `at`; axes in the order of the cut.
+/// The moments and parts of a cell below `at`; axes in the order of the cut.
 struct MixtureCutResult {
   MixtureMoments lower;
   std::size_t lower_parts = 0;  ///< sources that have a part below, and above
   std::size_t upper_parts = 0;
 };
 
-/// Makes the edge for the sources begin … end − 1 (begin a multiple of kMixturePadding, entries up
-/// to the next multiple of it readable and writable, with weight and position 0) and adds up what
-/// is below it. Where one of a source's two parts would carry less than least_share, the larger
-/// part takes both.
+/// Computes the edge for the sources begin … end − 1 and sums the moments below it. begin is a
+/// multiple of kMixturePadding; the entries from end to the next multiple of it must be readable
+/// and writable, with weight and position 0. Where one of a source's two parts would carry less
+/// than least_share, the larger part takes both.
 MixtureCutResult cut_mixture(const MixtureCut& cut, std::size_t begin, std::size_t end);
 
-/// Some of the sources of a cell, which go on in arrays of their own.
+/// A copy of those sources that have a part in a cell, to arrays of their own.
 struct MixtureCopy {
   int dim = 0;
   std::array<MixtureInterval, kMixtureDimLimit> intervals{};  ///< of the cell, by axis
@@ -65,17 +66,17 @@ struct MixtureCopy {
   std::size_t size = 0;              ///< of the arrays above
   std::size_t stride = 0;
   std::size_t parts = 0;  ///< sources with a part in the cell
-  /// Where they go to: as above, with their own stride, at least `parts` rounded up to
-  /// kMixturePadding, plus kMixturePadding.
+  /// The destination, laid out as above, with its own stride: at least `parts` rounded up to a
+  /// multiple of kMixturePadding, plus kMixturePadding.
   double* to_source = nullptr;
   double* to_weight = nullptr;
   double* to_position = nullptr;
-  /// Lower and upper, by axis; the lower may be null: it is not copied.
+  /// Lower and upper, by axis; the lower may be null, and is then not copied.
   std::array<std::array<double*, 2>, kMixtureDimLimit> to_edges{};
   std::size_t to_stride = 0;
 };
 
-/// Copies the sources that have a part in the cell, in their order, and zeros after them.
+/// Copies the sources that have a part in the cell, in order, and appends zeros.
 void copy_mixture_parts(const MixtureCopy& copy);
 
 /// A finished cell.
@@ -95,8 +96,9 @@ struct MixtureParts {
   std::array<double, kMixtureDimLimit> noise{};  ///< Σ mass · E[x − y], by axis
 };
 
-/// Writes mass and name of every part of the cell among `size` sources to `mass` and `source`,
-/// which have room for `size` rounded up to kMixturePadding, plus kMixturePadding.
+/// Writes the mass and the source's name of every part of the cell among `size` sources to `mass`
+/// and `source`, which must have room for `size` rounded up to a multiple of kMixturePadding, plus
+/// kMixturePadding.
 MixtureParts list_mixture_parts(const MixtureCell& cell, std::size_t size, double* mass,
                                 double* source);
 

@@ -15,16 +15,17 @@
 namespace qsmpc::controller {
 namespace {
 
-// What rounding may take away from the cost, relative to the whole mixture's second moment.
+// Allowance for rounding in the cost, relative to the whole mixture's second moment.
 constexpr double kCostRounding = 1e-15;
-// A round cuts cells that spread at least this fraction of the most spread one, and cuts them again
-// until their pieces spread less. At first cells are far more spread than in the end; but the more
-// rounds, the more even is the work that threads share.
+// A round cuts the cells whose spread is at least the largest one divided by a ratio between these
+// two, and cuts them again until their pieces spread less. Early cells have a far larger spread
+// than the final ones, which allows a large ratio; but more rounds balance the work between threads
+// better.
 constexpr double kLeastRatio = 2.0;
 constexpr double kMostRatio = 16.0;
-// Sources that are worth a task of their own.
+// Number of sources that justifies a task of its own.
 constexpr std::size_t kTaskSources = 2048;
-// Cells whose parts one task lists.
+// Number of cells whose parts one task lists.
 constexpr std::size_t kCellGroup = 64;
 
 }  // namespace
@@ -46,7 +47,7 @@ struct MixtureSplitter::Work {
   /// One of the cells that a round cuts.
   struct Chosen {
     std::ptrdiff_t place = 0;   // in the list of boxes
-    std::ptrdiff_t pieces = 0;  // that it was cut into
+    std::ptrdiff_t pieces = 0;  // number that it was cut into
   };
   struct Task {
     std::size_t begin = 0;  // of the chosen
@@ -65,14 +66,14 @@ struct MixtureSplitter::Work {
   std::vector<ListedBox> merged;
   std::vector<Chosen> round;
   std::vector<ListedBox> pieces;  // of the chosen, `most` places each
-  std::uint32_t least = 0;        // key of what is cut in the round
-  std::size_t most = 0;           // pieces that a cell is cut into
+  std::uint32_t least = 0;        // least key that is cut in the round
+  std::size_t most = 0;           // largest number of pieces of a cell
   std::vector<Task> tasks;
   std::vector<std::unique_ptr<CellCutter>> cutters;
   std::vector<CellCutter*> idle;
-  std::mutex mutex;  // of the idle cutters
+  std::mutex mutex;  // guards the idle cutters
 
-  std::vector<std::size_t> places;  // of a cell's parts in the following two
+  std::vector<std::size_t> places;  // of a cell's parts in the next two arrays
   std::vector<double> part_mass;
   std::vector<double> part_source;
   std::vector<MixtureParts> listed;  // by cell
@@ -110,7 +111,7 @@ void MixtureSplitter::Work::hand_back(CellCutter& cutter) {
   idle.push_back(&cutter);
 }
 
-/// One cell that holds everything.
+/// Starts with one cell that holds everything.
 void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& weights) {
   for (const auto& cutter : cutters) cutter->pool().reset();
   CellCutter& cutter = borrow();
@@ -169,7 +170,7 @@ void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& 
   hand_back(cutter);
 }
 
-/// Chooses the cells that are cut next, and divides them into tasks; false if there is none.
+/// Chooses the cells to cut next and divides them into tasks; returns false if there are none.
 bool MixtureSplitter::Work::begin_round() {
   const auto by_key = [](const ListedBox& a, const ListedBox& b) { return a.key < b.key; };
   const ListedBox& widest = *std::max_element(boxes.begin(), boxes.end(), by_key);
@@ -197,7 +198,7 @@ bool MixtureSplitter::Work::begin_round() {
               [](const Chosen& a, const Chosen& b) { return a.place < b.place; });
   }
   tasks.clear();
-  std::size_t sources = kTaskSources;  // of the task at hand
+  std::size_t sources = kTaskSources;  // of the current task
   for (std::size_t n = 0; n < round.size(); ++n) {
     if (sources >= kTaskSources) {
       tasks.push_back({.begin = n});
@@ -218,7 +219,7 @@ void MixtureSplitter::Work::run_task(std::size_t task) {
   hand_back(cutter);
 }
 
-/// Puts the pieces in the places of the cells that they were cut from.
+/// Replaces the cells that were cut by their pieces, in place.
 void MixtureSplitter::Work::merge() {
   merged.clear();
   std::ptrdiff_t from = 0;
@@ -232,14 +233,14 @@ void MixtureSplitter::Work::merge() {
   boxes.swap(merged);
 }
 
-/// From the noise's axes, of which the lower triangle is given, to the state's.
+/// Rotates a matrix, given by its lower triangle, from the noise's axes to the state's.
 void MixtureSplitter::Work::rotate(Eigen::MatrixXd& in_axes, Eigen::MatrixXd& out) {
   in_axes.triangularView<Eigen::StrictlyUpper>() = in_axes.transpose();
   product.noalias() = axes * in_axes;
   out.noalias() = product * axes.transpose();
 }
 
-/// Lists the parts of all cells: first each cell's in a place of its own, then side by side.
+/// Lists the parts of all cells: first each cell's in its own range, then contiguously.
 void MixtureSplitter::Work::list(const Executor& run, MixtureCells& out) {
   places.clear();
   make_room(places, boxes.size());
@@ -272,7 +273,7 @@ void MixtureSplitter::Work::list(const Executor& run, MixtureCells& out) {
   std::size_t total = 0;
   std::size_t count = 0;
   for (std::size_t n = 0; n < listed.size(); ++n) {
-    // By differences of moments a cell may have some mass, of which rounding is all.
+    // A cell's mass, as a difference of moments, may be nothing but rounding.
     if (listed[n].count == 0) continue;
     places[count] = places[n];
     listed[count++] = listed[n];
@@ -363,7 +364,7 @@ void MixtureSplitter::split(const Points& sources, const Eigen::VectorXd& weight
     work.merge();
   }
   work.list(run, out);
-  // The cost is what the cells lack of the mixture's second moment.
+  // The cost is the part of the mixture's second moment that the cells' means lack.
   out.w2 = std::sqrt(std::max(0.0, work.frame.second_moment - work.cells_covariance.trace()) +
                      kCostRounding * work.frame.second_moment);
   work.rotate(work.cells_covariance, out.covariance);

@@ -1,17 +1,18 @@
-// A Gaussian mixture cut into cells, of which each becomes one point: how a prediction takes up
-// Gaussian noise and keeps its number of points, without a quantiser of the noise.
+// Cuts a Gaussian mixture into cells, each of which becomes one point: a prediction absorbs
+// Gaussian noise in this way at a constant number of points, without quantising the noise.
 //
 // The mixture is Σ ρ_i N(f_i, Σ): the sources f_i plus noise w ~ N(0, Σ). In the axes of Σ the
 // noise has independent coordinates, so that the probability of a box, and the first and second
 // moments over it, are products of one-dimensional closed forms. Cells are boxes in these axes,
-// made by splitting, again and again, those that spread most, at their means. The part of a source
-// in a cell is a region of its noise; all that is in a cell goes to the cell's mean. As the parts
+// made by repeatedly splitting those with the largest spread at their means. The part of a source
+// in a cell is a region of its noise; everything in a cell moves to the cell's mean. As the parts
 // of a source partition its noise, this is a coupling of the mixture with the result, and its cost
 // is the variance within the cells, exactly (docs/theory/quantisation.md).
 //
-// A source is cut into a bounded number of parts: where one would carry less than the share
-// 1/parts, the source's whole rest goes to the other side of the split. It bounds the work by
-// sources x parts, as a noise quantiser of `parts` points would, and keeps the result a partition.
+// A source is cut into a bounded number of parts: where a part would carry less than the share
+// 1/parts, the whole of the source in the cell goes to the other side of the split. This bounds the
+// work by sources x parts, as a noise quantiser of `parts` points would, and keeps the result a
+// partition.
 #pragma once
 
 #include <memory>
@@ -49,9 +50,9 @@ class MixtureSplitter {
   ~MixtureSplitter();
 
   /// Cuts the mixture about `sources` (d x n, finite) with `weights` (n, non-negative, summing to
-  /// one) into at most as many cells as wished; fewer only where nothing is left to split. Makes
-  /// no allocation once it has worked on a mixture of this size; with several threads, whose memory
-  /// is divided anew each time, hardly any.
+  /// one) into at most the requested number of cells; fewer only where nothing is left to split.
+  /// Allocates nothing once it has processed a mixture of this size; with several threads, whose
+  /// memory is divided differently each time, hardly anything.
   void split(const Points& sources, const Eigen::VectorXd& weights, const Executor& run,
              MixtureCells& out);
 

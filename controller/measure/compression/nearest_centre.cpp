@@ -22,7 +22,7 @@ double squared_distance(const Eigen::MatrixXd& points, Eigen::Index i,
 NearestCentre::NearestCentre(const Eigen::MatrixXd& points)
     : points_(points), own_(points.cols()), others_(points.cols(), 0.0) {}
 
-/// All bounds on the other centres give way by the furthest that any centre has moved.
+/// Lowers all bounds on the other centres by the largest distance that any centre has moved.
 void NearestCentre::note_drift(const Eigen::MatrixXd& centres) {
   if (last_centres_.cols() == centres.cols()) {
     const double drift = (centres - last_centres_).colwise().norm().maxCoeff();
@@ -46,7 +46,7 @@ std::vector<double> NearestCentre::measure_reaches(const Eigen::MatrixXd& centre
   return reaches;
 }
 
-/// A centre at twice a point's distance or further is no nearer to the point: it is not listed.
+/// A centre at least twice as far away as a point is no nearer to the point, so it is not listed.
 void NearestCentre::list_neighbours(const Eigen::MatrixXd& centres,
                                     const std::vector<double>& reaches) {
   const Eigen::Index count = centres.cols();
@@ -109,7 +109,7 @@ int NearestCentre::assign_in(const Eigen::MatrixXd& centres, std::vector<int>& a
 }
 
 int NearestCentre::assign(const Eigen::MatrixXd& centres, std::vector<int>& assignment) {
-  // The dimensions of planning problems get loops of fixed length.
+  // The dimensions common in planning problems have loops of fixed length.
   switch (centres.rows()) {
     case 1:
       return assign_in<1>(centres, assignment);

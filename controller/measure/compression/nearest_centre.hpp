@@ -1,5 +1,5 @@
-// Repeated assignment of many points to the nearest of some centres that move a little each time:
-// the inner step of Lloyd's method.
+// Repeated assignment of many points to the nearest of a set of centres that move slightly each
+// time: the inner step of Lloyd's method.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace qsmpc::controller {
 
-/// Remembers, from one assignment to the next, how far away every point's second-nearest centre is
-/// at least, so that most points are not looked at again (Hamerly's bounds). Centres that are
-/// looked at are taken from a list sorted by their distance to the point's present one, up to where
-/// the triangle inequality excludes the rest. The result is the same as if all were compared.
+/// Keeps, from one assignment to the next, a lower bound on the distance of every point to its
+/// second-nearest centre, so that most points need not be examined again (Hamerly's bounds). The
+/// centres to examine come from a list sorted by their distance to the point's current one, up to
+/// where the triangle inequality excludes the rest. The result is the same as if all were compared.
 class NearestCentre {
  public:
-  /// `points`: d x n, kept; the caller leaves it alive and unchanged.
+  /// `points`: d x n, held by reference; must stay alive and unchanged.
   explicit NearestCentre(const Eigen::MatrixXd& points);
 
   /// Moves every point in `assignment` (n, entries in 0 … N − 1) to the nearest of `centres`
@@ -37,7 +37,7 @@ class NearestCentre {
 
   const Eigen::MatrixXd& points_;
   std::vector<double> own_;     // n, distance to the centre that the point is assigned to
-  std::vector<double> others_;  // n, no other centre is nearer than this
+  std::vector<double> others_;  // n, lower bound on the distance to any other centre
   Eigen::MatrixXd last_centres_;
   std::vector<std::vector<Neighbour>> neighbours_;  // of every centre, nearest first
 };

@@ -12,15 +12,15 @@
 namespace qsmpc::controller {
 namespace {
 
-// Correlations closer to ±1 than this count as ±1, which is all that rounding lets tell.
+// Correlations closer to ±1 than this count as ±1: rounding does not let them be distinguished.
 constexpr double kDegenerate = 1e-15;
-// What that can cost. ∂P(X ≤ h, Y ≤ k)/∂r is the density at (h, k), at most 1/(2π√(1 − r²)), so
-// that each of the four corners changes by at most acos|r|/(2π); the correlation's rounding
-// included.
+// The error that this can cause. ∂P(X ≤ h, Y ≤ k)/∂r is the density at (h, k), at most
+// 1/(2π√(1 − r²)), so that each of the four corners changes by at most acos|r|/(2π); the
+// correlation's rounding included.
 constexpr double kDegenerateError = 4e-8;
 // The four corners' derivatives times the correlation's rounding, and that of Owen's T.
 constexpr double kCorrelationRounding = 1e-15;
-// Standard deviations beyond which a tail (1e-19) is nothing at this accuracy.
+// Standard deviations beyond which a tail (1e-19) is negligible at this accuracy.
 constexpr double kFar = 9.0;
 
 // Owen's T in double precision: its few units in the last place are far below kRectangleError.
@@ -35,7 +35,7 @@ double quadrant(double h, double k, double r) {
   if (k > kFar) return normal_cumulative(h);
   const double root = std::sqrt((1.0 - r) * (1.0 + r));
   if (h == 0.0 && k == 0.0) return 0.25 + std::asin(r) / (2.0 * std::numbers::pi);
-  // T(0, ±∞) = ±¼, which the quotient's sign decides.
+  // T(0, ±∞) = ±¼, with the sign of the quotient.
   const auto owen = [&](double first, double second) {
     if (first == 0.0) return second > 0.0 ? 0.25 : -0.25;
     return boost::math::owens_t(first, (second - r * first) / (first * root), PlainDouble());
@@ -63,7 +63,7 @@ double rectangle_probability(const Eigen::Vector2d& mean, const Eigen::Matrix2d&
   const Eigen::Vector2d deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   for (int axis = 0; axis < 2; ++axis) {
     if (deviation[axis] > 0.0) continue;
-    // This coordinate is known: it is inside, or nothing is.
+    // This coordinate is deterministic: if it is outside, so is everything.
     if (mean[axis] < lower[axis] || mean[axis] > upper[axis]) return 0.0;
     const int other = 1 - axis;
     if (!(deviation[other] > 0.0)) {

@@ -13,11 +13,11 @@ namespace qsmpc::controller {
                                            const Eigen::Vector2d& lower,
                                            const Eigen::Vector2d& upper);
 
-/// Bounds the error of `rectangle_probability` under this covariance. Near ±1, P changes with the
-/// correlation r as fast as 1/√(1 − r²), so that the rounding of r counts.
+/// Bounds the error of `rectangle_probability` under this covariance. Near r = ±1, P changes with
+/// the correlation r as fast as 1/√(1 − r²), so that the rounding of r matters.
 [[nodiscard]] double rectangle_error(const Eigen::Matrix2d& covariance);
 
-/// The same where the coordinates are far from dependent.
+/// The same where the coordinates are far from linearly dependent.
 inline constexpr double kRectangleError = 1e-14;
 
 }  // namespace qsmpc::controller

@@ -1,6 +1,6 @@
-// The orders p, besides the mean square, in which errors are bounded. An error that is a few times
-// its root mean square only with a tiny probability has high norms not much above it, and
-// P(|e| > t) ≤ (‖e‖_p/t)^p then falls much faster with t than the mean square says.
+// The orders p, besides the mean square, in which errors are bounded. If an error exceeds a few
+// times its root mean square only with tiny probability, its norms of high order are not much
+// larger, and P(|e| > t) ≤ (‖e‖_p/t)^p falls much faster with t than the mean-square bound.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ inline constexpr std::array<int, 2> kHigherOrders = {4, 8};
 /// One vector for each of kHigherOrders: bounds ‖·‖_p = (E|·|^p)^{1/p} coordinate by coordinate.
 using HigherNorms = std::array<Eigen::VectorXd, kHigherOrders.size()>;
 
-/// All norms the same, for vectors of this dimension.
+/// All norms equal to `value`, for vectors of dimension `dim`.
 [[nodiscard]] inline HigherNorms constant_norms(Eigen::Index dim, double value) {
   HigherNorms norms;
   norms.fill(Eigen::VectorXd::Constant(dim, value));

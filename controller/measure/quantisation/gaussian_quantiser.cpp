@@ -14,13 +14,14 @@
 namespace qsmpc::controller {
 namespace {
 
-// W2² of spread points over that of a grid with as many levels, not always whole, on every axis:
-// between 0.79 and 0.93 for 100 to 1000 points in 2 to 6 dimensions. It only guides a choice.
+// W2² of Lloyd's points over that of a grid of as many points, with the same, possibly fractional,
+// number of levels on every axis: between 0.79 and 0.93 for 100 to 1000 points in 2 to 6
+// dimensions. It only guides a choice.
 constexpr double kExpectedGain = 0.85;
 
-/// Depth-first search over the levels of axes sorted by falling variance. Since D(n) ≥ n⁻², which
-/// is what a Gaussian costs at a rate of log n, s further axes with variances v cost together at
-/// least s (Π v)^(1/s) (Π n)^(−2/s): that excludes levels that leave too little for them.
+/// Depth-first search over the levels of axes sorted by falling variance. Since D(n) ≥ n⁻², the
+/// distortion of a Gaussian at rate log n, s further axes with variances v cost at least
+/// s (Π v)^(1/s) (Π n)^(−2/s). This excludes levels that leave too little for them.
 class LevelSearch {
  public:
   LevelSearch(Eigen::VectorXd variances, int budget)
@@ -40,7 +41,7 @@ class LevelSearch {
   [[nodiscard]] const std::vector<int>& best() const { return best_; }
 
  private:
-  // A first shape, from which to exclude others: the ideal real levels, rounded down in turn.
+  // An initial shape for excluding others: the ideal real levels, rounded down in turn.
   void guess(int budget) {
     best_ = current_;
     best_error_ = 0.0;
@@ -64,8 +65,8 @@ class LevelSearch {
     return std::max(1, static_cast<int>(least));
   }
 
-  // The largest level of an axis that leaves those after it, the next one of them and all together,
-  // a chance to cost less than `spare`.
+  // The largest level of an axis with which those after it, both the next one alone and all
+  // together, can still cost less than `spare`.
   [[nodiscard]] int most_useful_level(Eigen::Index axis, int left, double spare) const {
     const double next = left * std::sqrt(spare / variances_[axis + 1]);
     const auto axes = static_cast<double>(positive_ - axis - 1);
@@ -73,7 +74,7 @@ class LevelSearch {
     return static_cast<int>(std::min({static_cast<double>(left - 1), next, all})) + 1;
   }
 
-  // `left`: what remains of the budget; `ceiling`: the level of the axis before.
+  // `left`: what remains of the budget; `ceiling`: the level of the previous axis.
   void visit(Eigen::Index axis, int left, int ceiling, double error) {
     if (error >= best_error_) return;
     if (axis == positive_) {
@@ -95,7 +96,7 @@ class LevelSearch {
   }
 
   Eigen::VectorXd variances_;
-  Eigen::Index positive_;       // axes with variance; sorted, so that they come first
+  Eigen::Index positive_;       // number of axes with variance; sorted, they come first
   Eigen::VectorXd cost_after_;  // the bound for all positive axes after each, with one point
   std::vector<int> current_;
   std::vector<int> best_;
@@ -114,7 +115,7 @@ struct Standardised {
   Points points;            // d x n
   Eigen::VectorXd weights;  // n
   Eigen::MatrixXd lost;     // d x d
-  std::vector<int> levels;  // of a product of lines, otherwise empty
+  std::vector<int> levels;  // of a product of one-dimensional quantisers; else empty
 };
 
 /// Optimal one-dimensional quantisers for the first axes, all but `left_out`.
@@ -140,7 +141,7 @@ Standardised product(const std::vector<Factor>& factors, const Eigen::VectorXd& 
                       .levels = {}};
   const Eigen::VectorXd deviations = variances.cwiseSqrt();
   Eigen::Index axis = 0;
-  Eigen::Index filled = 1;  // columns; those of one more factor are copies of them
+  Eigen::Index filled = 1;  // columns so far; those of one more factor are copies of them
   for (const Factor& factor : factors) {
     const Eigen::Index axes = factor.points.rows();
     const auto scale = deviations.segment(axis, axes);
@@ -167,7 +168,7 @@ int points_to_spread(const std::vector<int>& levels, Eigen::Index leading, int b
                          [](int left, int level) { return left / level; });
 }
 
-/// D between the whole numbers, along a straight line in log n and log D.
+/// D between the integers, interpolated linearly in log n and log D.
 double distortion_between(double count) {
   const int below = static_cast<int>(count);
   const double part = std::log(count / below) / std::log1p(1.0 / below);
@@ -175,7 +176,7 @@ double distortion_between(double count) {
          std::pow(approximate_distortion(below + 1), part);
 }
 
-/// The number of leading axes for which spread points promise the least W2; 1 if there is none.
+/// The number of leading axes for which Lloyd's points promise the least W2; 1 if there is none.
 Eigen::Index axes_to_spread(const Eigen::VectorXd& variances, const std::vector<int>& levels,
                             int budget) {
   const auto dim = variances.size();
@@ -200,7 +201,7 @@ Eigen::Index axes_to_spread(const Eigen::VectorXd& variances, const std::vector<
   return best;
 }
 
-/// Levels on the first axes, spread points on the last `leading` ones.
+/// Levels on the first axes, Lloyd's points on the last `leading` ones.
 std::vector<Factor> spread_factors(const std::vector<int>& levels, Eigen::Index leading,
                                    int budget) {
   std::vector<Factor> factors = axis_factors(levels, leading);

@@ -1,6 +1,6 @@
-// Turns a Gaussian into a discrete measure with a known error. Either a product of optimal
-// one-dimensional quantisers on the axes of the covariance's eigenbasis, or, with fewer points for
-// the same error, points that Lloyd's method has spread.
+// Turns a Gaussian into a discrete measure with a known error: either a product of optimal
+// one-dimensional quantisers on the axes of the covariance's eigenbasis or, with fewer points for
+// the same error, points placed by Lloyd's method.
 //
 //   const GaussianQuantisation q = quantise(belief, 100);
 //   q.measure;  // at most 100 weighted points, with the belief's mean
@@ -23,7 +23,7 @@ namespace qsmpc::controller {
 
 enum class QuantiserKind {
   kProduct,  ///< a grid: microseconds
-  kLloyd,    ///< centroidal: 8 to 11 % less W2 in two or three dimensions, and a slow first call
+  kLloyd,    ///< centroidal: 8 to 11 % less W2 in two or three dimensions, but a slow first call
 };
 
 struct QuantiserEntry {
@@ -40,8 +40,8 @@ struct QuantiserEntry {
 
 struct GaussianQuantisation {
   DiscreteMeasure measure;
-  /// W2 to the Gaussian. Of a product exact: its cells are the points' Voronoi cells. Otherwise the
-  /// cost of a coupling, hence an upper bound.
+  /// W2 to the Gaussian. Exact for a product, whose cells are the points' Voronoi cells; otherwise
+  /// the cost of a coupling, hence an upper bound.
   double w2 = 0.0;
   Eigen::MatrixXd within_covariance;  ///< d x d; covariance = cov(measure) + within_covariance
   /// Points on each eigenaxis, eigenvalues increasing, for a product; otherwise empty.
@@ -50,8 +50,9 @@ struct GaussianQuantisation {
 
 /// Levels n_j ≥ 1 with Π n_j ≤ budget that minimise Σ variances_j D(n_j), D the distortion of the
 /// optimal one-dimensional quantiser (beyond kExactDistortions points its asymptote): by a complete
-/// search over shapes whose levels do not grow where the variance falls. Axes of zero variance get
-/// one level. Throws std::invalid_argument if budget < 1 or a variance is negative or not finite.
+/// search over shapes whose levels do not increase as the variance decreases. Axes of zero variance
+/// get one level. Throws std::invalid_argument if budget < 1 or a variance is negative or not
+/// finite.
 [[nodiscard]] std::vector<int> allot_levels(const Eigen::Ref<const Eigen::VectorXd>& variances,
                                             int budget);
 
@@ -61,12 +62,12 @@ struct GaussianQuantisation {
 ///
 /// kProduct: Σ λ_j D(n_j) with the levels of `allot_levels`.
 ///
-/// kLloyd: `normal_lloyd` points, scaled, on the eigenaxes with the largest variances, and levels
-/// on the others, where this is expected to gain most; the product where it gains nothing: on the
-/// line, and where more than kLloydPoints would have to be spread. So its w2 never exceeds the
-/// product's. The first call for a number of axes and points takes as long as `normal_lloyd`, later
-/// ones, for whatever Gaussian, about as long as the product: not for a control loop whose
-/// covariance changes shape, unless those first calls are made before it starts.
+/// kLloyd: scaled `normal_lloyd` points on those eigenaxes of largest variance for which the
+/// expected gain is greatest, and levels on the others; the product if there is no gain, as on the
+/// line or where more than kLloydPoints points would be needed. So its w2 never exceeds the
+/// product's. The first call for a given number of axes and points takes as long as `normal_lloyd`;
+/// later calls, for any Gaussian, take about as long as the product. Hence it is not for a control
+/// loop whose covariance changes shape, unless those first calls are made before it starts.
 ///
 /// Throws std::invalid_argument as check_gaussian and allot_levels.
 [[nodiscard]] GaussianQuantisation quantise(const Gaussian& gaussian, int budget,

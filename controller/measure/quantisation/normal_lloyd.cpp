@@ -18,14 +18,14 @@
 namespace qsmpc::controller {
 namespace {
 
-// Cells of the grids for each point that is sought. Most rounds are spent on the coarse grid; the
-// fine one makes the cells' steps along the clusters' borders cheap.
+// Cells of the grids per requested point. Most rounds are spent on the coarse grid; the fine one
+// reduces the cost of the staircase of cells along the clusters' borders.
 constexpr double kCoarseCells = 120.0;
 constexpr double kFineCells = 600.0;
 constexpr double kFewestCoarseCells = 2e4;
 constexpr double kFewestFineCells = 3e5;
 constexpr double kMostFineCells = 1e6;
-// A grid is left when a round lowers W2² by less than this part of it.
+// Work on a grid ends when a round lowers W2² by less than this share.
 constexpr double kCoarseGain = 1e-4;
 constexpr double kFineGain = 1e-3;
 constexpr int kLongestDescent = 1000;
@@ -39,7 +39,7 @@ struct Grid {
   Eigen::VectorXd weights;  // M, the cells' probabilities
 };
 
-/// The grid with as many levels on every axis as make at most `most` cells.
+/// The grid with the largest number of levels on every axis that makes at most `most` cells.
 Grid make_grid(int dim, double most) {
   const auto levels = static_cast<int>(std::pow(most, 1.0 / dim) + kRootAllowance);
   const NormalQuantiser& quantiser = normal_quantiser(levels);
@@ -69,8 +69,8 @@ std::vector<int> coarser_levels(int fine, int coarse) {
   return nearest;
 }
 
-/// Every cell of `fine` takes the cluster of the cell of `coarse` in which its mean lies: a guess
-/// from which the nearest one is soon found.
+/// Every cell of `fine` takes the cluster of the cell of `coarse` in which its mean lies: an
+/// initial guess from which the nearest one is soon found.
 std::vector<int> carried_over(const Grid& coarse, const std::vector<int>& clusters,
                               const Grid& fine) {
   const std::vector<int> coarser = coarser_levels(fine.levels, coarse.levels);
@@ -116,7 +116,7 @@ Eigen::MatrixXd lost_covariance(const Clusters& clusters) {
          clusters.centres * clusters.masses.asDiagonal() * clusters.centres.transpose();
 }
 
-/// Lloyd's rounds on a grid, until one gains less than `least_gain` of W2².
+/// Lloyd's rounds on a grid, until a round gains less than the share `least_gain` of W2².
 void descend(const Grid& grid, double least_gain, Clusters& clusters) {
   NearestCentre nearest(grid.points);
   double before = std::numeric_limits<double>::infinity();
@@ -129,7 +129,7 @@ void descend(const Grid& grid, double least_gain, Clusters& clusters) {
   }
 }
 
-/// An orthogonal matrix without a relation to the axes.
+/// An orthogonal matrix unrelated to the axes.
 Eigen::MatrixXd oblique_basis(Eigen::Index dim) {
   const Eigen::VectorXd steps = Eigen::VectorXd::LinSpaced(dim, 1.0, static_cast<double>(dim));
   const Eigen::MatrixXd waves = (steps * steps.transpose()).array().sin();
@@ -137,7 +137,7 @@ Eigen::MatrixXd oblique_basis(Eigen::Index dim) {
 }
 
 /// The split tree in an oblique basis. Along the axes its cuts would follow those of the grid, and
-/// Lloyd's method would start beside a saddle point.
+/// Lloyd's method would start near a saddle point.
 Clusters split_tree(const Grid& grid, int count) {
   const Eigen::MatrixXd basis = oblique_basis(grid.points.rows());
   const Compression tree = compress(
@@ -148,7 +148,7 @@ Clusters split_tree(const Grid& grid, int count) {
           .masses = tree.measure.weights};
 }
 
-/// The measure of the clusters that have mass, with its axes in the order of what is lost on them.
+/// The measure of the clusters that have mass, its axes ordered by decreasing lost variance.
 NormalLloyd collect(const Clusters& clusters) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index n = 0; n < clusters.masses.size(); ++n) {

@@ -24,7 +24,7 @@ double quantile(double probability) {
 }
 
 /// Nearly optimal points: quantiles of the normalised cube root of the density, which is N(0, 3);
-/// with these plotting positions the outermost ones, too, are within 5 % of the solution.
+/// with these plotting positions even the outermost ones are within 5 % of the solution.
 Eigen::VectorXd companded_points(int count) {
   Eigen::VectorXd points(count);
   for (int i = 0; i < count; ++i) {

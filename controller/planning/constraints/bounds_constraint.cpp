@@ -1,5 +1,5 @@
-// Every particle's body within the bounds of the safe set (Eq. 4-8): c is how far a disc of it is
-// beyond a face, in the unit of the state.
+// Every particle's body within the bounds of the safe set (Eq. 4-8): c is the signed distance of a
+// disc beyond a face, in the unit of the state.
 #include <cmath>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// The constraints of all stages as a solver takes them: functions of its decision.
+// The constraints of all stages as functions of the solver's decision.
 #pragma once
 
 #include <memory>
@@ -13,22 +13,22 @@
 
 namespace qsmpc::controller {
 
-/// c + margin ≤ 0 for each constraint of the stages 1 … horizon, and behind them those of the risk.
-/// Refers to the cost.
+/// c + margin ≤ 0 for each constraint of the stages 1 … horizon, followed by those of the risk.
+/// Keeps a reference to the cost.
 class HorizonConstraints {
  public:
   HorizonConstraints(HorizonCost& cost, const SafeSet& safe_set);
 
-  /// Makes `out` the constraints of the prediction that the cost holds now. To be called again
-  /// whenever it holds another one; `out` refers to this object.
+  /// Sets `out` to the constraints of the prediction that the cost holds. Call it again whenever
+  /// the cost holds another one; `out` refers to this object.
   void describe(const Prediction& prediction, ConstraintSet& out);
 
   /// Adds the limits of the risk, which must stay alive; null: none.
   void set_risk(RiskConstraint* risk) { risk_ = risk; }
-  /// How many are of particles: the first.
+  /// How many of the constraints, the first, are on particles.
   [[nodiscard]] Eigen::Index particle_count() const { return particle_count_; }
 
-  /// Those of particles are asked for this much more (≥ 0, in the unit of the constraint).
+  /// Tightens the constraints on particles by this much (≥ 0, in the unit of the constraint).
   void set_margin(double margin) { margin_ = margin; }
   [[nodiscard]] double margin() const { return margin_; }
 

@@ -14,20 +14,20 @@
 
 namespace qsmpc::controller {
 
-/// Constraints c ≤ 0, in groups whose members are alike: of those in a group that are violated, a
-/// solver looks at the worst first. Every function takes the stage, 1 … horizon, and its particles
+/// Constraints c ≤ 0, in groups of similar members: among the violated ones of a group, a solver
+/// considers the worst first. Every function takes the stage, 1 … horizon, and its particles
 /// (state_dim x n).
 class StageConstraint {
  public:
   virtual ~StageConstraint() = default;
 
   [[nodiscard]] virtual int groups() const = 0;
-  /// How many there are in a group, at a stage of `particles` particles.
+  /// Number of constraints in a group, at a stage of `particles` particles.
   [[nodiscard]] virtual Eigen::Index group_size(Eigen::Index particles) const = 0;
   /// c of a group, in the unit of the constraint; `values` comes with group_size entries.
   virtual void values(Eigen::Index stage, int group, const Points& particles,
                       Eigen::Ref<Eigen::VectorXd> values) const = 0;
-  /// c of one of a group; overwrites `slope` with its derivative.
+  /// c of one member of a group; overwrites `slope` with its derivative.
   [[nodiscard]] virtual double value_and_slope(Eigen::Index stage, int group,
                                                const Points& particles, Eigen::Index index,
                                                StageSlope& slope) const = 0;
@@ -40,10 +40,10 @@ struct StageConstraintEntry {
   std::unique_ptr<const StageConstraint> (*make)(const SafeSet& safe_set) = nullptr;
 };
 
-/// The table of constraints. A solver that takes any keeps all of them.
+/// The table of constraints. A solver that supports constraints enforces all of them.
 [[nodiscard]] const std::vector<StageConstraintEntry>& stage_constraints();
 
-// The makers of the table.
+// The factories in the table.
 [[nodiscard]] std::unique_ptr<const StageConstraint> make_bounds_constraint(
     const SafeSet& safe_set);
 

@@ -1,4 +1,4 @@
-// Targets some of whose coordinates are angles that are meant modulo 2π.
+// Targets with angular coordinates, which are meant modulo 2π.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace qsmpc::controller {
 
-/// Writes to `out` (n) what means the same as `target` (n) and is nearest to `state` (n): each
+/// Writes to `out` (n) the equivalent of `target` (n) that is nearest to `state` (n): each
 /// coordinate in `angles` is shifted by the multiple of 2π that leaves it within π of that of
 /// `state`; the others are those of `target`. Allocates nothing.
 void nearest_target(const Eigen::Ref<const Eigen::VectorXd>& target, const std::vector<int>& angles,
                     const Eigen::Ref<const Eigen::VectorXd>& state, Eigen::VectorXd& out);
 
-/// `state` less the target nearest to it: what a cost or a distance is a function of.
+/// `state` less the target nearest to it: the argument of costs and distances.
 [[nodiscard]] Eigen::VectorXd target_offset(const Eigen::Ref<const Eigen::VectorXd>& target,
                                             const std::vector<int>& angles,
                                             const Eigen::Ref<const Eigen::VectorXd>& state);

@@ -34,14 +34,13 @@ HWY_INLINE SquaredHinge squared_hinge_of_normal(Vector mean, Vector spread) {
   return {mean * half_slope + spread * spread * normal.probability, half_slope, normal.probability};
 }
 
-/// With t = 1 − r, h = ½ t²₊ − ½ (t − 1)²₊. Most particles are far from most faces, and of those
-/// that are not most are far from where h becomes straight; nothing is computed for what leaves
-/// nothing.
+/// With t = 1 − r, h = ½ t²₊ − ½ (t − 1)²₊. Most particles are far from most faces, and most of the
+/// others are far from where h becomes linear; terms that vanish are skipped.
 HWY_INLINE SmoothedHinge hinge_of_normal(Vector ratio, Vector spread) {
   const VectorTag d;
   const Vector t = constant(1.0) - ratio;
   const Vector reach = constant(kFarDeviations) * spread;
-  // NaN is not far.
+  // NaN does not count as far.
   if (hn::AllTrue(d, hn::Lt(t, zeros() - reach))) return {zeros(), zeros(), zeros()};
   const SquaredHinge whole = squared_hinge_of_normal(t, spread);
   SquaredHinge beyond{zeros(), zeros(), zeros()};
@@ -52,7 +51,7 @@ HWY_INLINE SmoothedHinge hinge_of_normal(Vector ratio, Vector spread) {
   const Mask deep = hn::Gt(t - constant(1.0), reach);
   const Vector value = constant(0.5) * (whole.value - beyond.value);
   const Vector slope = beyond.half_slope - whole.half_slope;
-  // Far away squares may be infinite; deep inside h is straight.
+  // Far away, squares may overflow; deep inside, h is linear.
   return {hn::IfThenZeroElse(far, hn::IfThenElse(deep, t - constant(0.5), value)),
           hn::IfThenZeroElse(far, hn::IfThenElse(deep, constant(-1.0), slope)),
           whole.probability - beyond.probability};
@@ -67,7 +66,7 @@ CoordinateMoments moments_loop(const double* x, const double* weights, std::size
   Vector most = zeros();
   for_vectors(size, [&](std::size_t i, auto load_at, auto, std::size_t part) HWY_ATTR {
     const Vector weight = load_at(weights + i);
-    // Elements beyond the size have no weight.
+    // Padding elements have zero weight.
     const Vector away = hn::IfThenZeroElse(hn::Eq(weight, zeros()), load_at(x + i) - r);
     const Vector weighted = weight * away;
     first.add(part, weighted);

@@ -9,7 +9,7 @@
 
 namespace qsmpc::controller {
 
-/// Standard deviations from a hinge beyond which nothing is left of it in these loops.
+/// Number of standard deviations from a hinge beyond which its expectation is taken as zero.
 inline constexpr double kFarDeviations = 8.3;
 
 /// Σ ρ (x − r), Σ ρ (x − r)² and the range of x − r, with 0, for a reference r.
@@ -20,22 +20,22 @@ struct CoordinateMoments {
   double most = 0.0;
 };
 
-/// What particles x_i stand for: share · x_i + offset + deviation · z, z ~ N(0, 1).
+/// The law that a particle x_i represents: share · x_i + offset + deviation · z, z ~ N(0, 1).
 struct SmoothedCoordinate {
   double share = 1.0;
   double offset = 0.0;
   double deviation = 0.0;  ///< > 0
 };
 
-/// Σ ρ E h over both faces, times the penalty's weight; its derivatives by an offset of all
-/// particles and by the square of the deviation, this one times two.
+/// Σ ρ E h over both faces, times the penalty's weight; its derivative by an offset of all
+/// particles, and twice its derivative by the square of the deviation.
 struct FaceCost {
   double value = 0.0;
   double by_offset = 0.0;
   double by_variance = 0.0;
 };
 
-/// A gradient's part ρ_i (constant + linear x_i).
+/// The part ρ_i (constant + linear x_i) of a gradient.
 struct FaceCorrection {
   double constant = 0.0;
   double linear = 0.0;

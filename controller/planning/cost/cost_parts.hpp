@@ -13,8 +13,7 @@
 
 namespace qsmpc::controller {
 
-/// What one or more terms of the cost (cost_terms.hpp) add up to, as files, pages and charts name
-/// it.
+/// The sum of one or more terms of the cost (cost_terms.hpp), as named in files, pages and charts.
 struct CostPartEntry {
   std::string name;   ///< of the column, e.g. "terminal"
   std::string words;  ///< e.g. "distance at the plan's end"
@@ -23,14 +22,14 @@ struct CostPartEntry {
 /// The parts in the order in which they are summed and written.
 [[nodiscard]] const std::vector<CostPartEntry>& cost_parts();
 
-/// The place of the part called `name` among cost_parts(). Throws std::invalid_argument if there is
+/// The index of the part called `name` in cost_parts(). Throws std::invalid_argument if there is
 /// none.
 [[nodiscard]] std::size_t cost_part(std::string_view name);
 
 /// A number for each part, 0 unless set.
 class CostParts {
  public:
-  /// Room for as many parts as there may be, so that no cost allocates.
+  /// The largest number of parts: fixed, so that no cost allocates.
   static constexpr std::size_t kMost = 8;
 
   CostParts() = default;

@@ -22,23 +22,23 @@ struct HorizonCostTerms {
   const SafeSet& safe_set;
   const QuadraticCost& cost;
   const Penalty& penalty;
-  const Eigen::MatrixXd& noise_covariance;   ///< zero where the prediction leaves the noise out
+  const Eigen::MatrixXd& noise_covariance;   ///< zero if the prediction omits the noise
   const Eigen::MatrixXd& within_covariance;  ///< of the belief's quantiser, for stage 0
 };
 
-/// One term; a new one is a file with a class, a line in the table and, where it is a part of its
-/// own, one among cost_parts().
+/// One term. A new one is a file with a class, a line in the table and, if it is a separate part,
+/// an entry in cost_parts().
 struct CostTermEntry {
   std::string name;
   std::string part;  ///< a name from cost_parts()
-  /// nullptr where the problem has no such term. Refers to what `terms` refers to.
+  /// Returns nullptr where the problem has no such term. Keeps the references in `terms`.
   std::unique_ptr<StageTerm> (*make)(const HorizonCostTerms& terms) = nullptr;
 };
 
-/// The table of terms, in the order in which they are added at one place.
+/// The table of terms, in the order in which they are added at each place.
 [[nodiscard]] const std::vector<CostTermEntry>& cost_terms();
 
-// The makers of the table. The quadratic ones share a file, and so do the printed ones.
+// The factories in the table. The quadratic terms share a file, and so do the printed ones.
 [[nodiscard]] std::unique_ptr<StageTerm> make_state_term(const HorizonCostTerms& terms);
 [[nodiscard]] std::unique_ptr<StageTerm> make_input_term(const HorizonCostTerms& terms);
 [[nodiscard]] std::unique_ptr<StageTerm> make_terminal_term(const HorizonCostTerms& terms);

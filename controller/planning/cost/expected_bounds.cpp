@@ -6,10 +6,10 @@
 namespace qsmpc::controller {
 namespace {
 
-// Stands for a deviation of 0, where the closed forms have their limits.
+// Replaces a standard deviation of 0, at which the closed forms take their limits.
 constexpr double kLeastDeviation = 1e-150;
 
-/// Whether no particle between these two feels a face; false if anything is NaN.
+/// Whether no particle between these two is penalised by a face; false if anything is NaN.
 bool all_far(const AxisInterval& bounds, const SmoothedCoordinate& law, double least, double most,
              double length) {
   const double reach = length + kFarDeviations * law.deviation;
@@ -32,8 +32,8 @@ ExpectedBounds::ExpectedBounds(const Box& bounds, const Penalty& penalty) : pena
   coordinates_.resize(bounds_.size());
 }
 
-/// action(coordinate, its place in a row of particles, range, slot in the list of sums) for the
-/// coordinates that are near a face and all chunks.
+/// Calls action(coordinate, offset of its range in the points, range, slot in the list of sums) for
+/// all coordinates near a face and all chunks.
 template <class Action>
 void ExpectedBounds::for_near(const Executor& run, const Points& points,
                               const Action& action) const {
@@ -45,7 +45,7 @@ void ExpectedBounds::for_near(const Executor& run, const Points& points,
   });
 }
 
-/// Laws of the coordinates, from the moments of all chunks.
+/// Computes the laws of the coordinates from the moments of all chunks.
 void ExpectedBounds::describe(const Law& law, const Points& points) {
   for (std::size_t n = 0; n < bounds_.size(); ++n) {
     const AxisInterval& bounds = bounds_[n];
@@ -103,8 +103,8 @@ double ExpectedBounds::add(const Law& law, const Points& points, const Eigen::Ve
       sum.by_variance += face_costs_[slot].by_variance;
     }
     value += sum.value;
-    // Through the mean that particles are drawn to, and through the variance: the derivative of
-    // (1 − θ²) v by f_i is (1 − θ²) 2 ρ_i (f_i − m).
+    // Through the mean that particles are shrunk towards, and through the variance: the derivative
+    // of (1 − θ²) v by f_i is (1 − θ²) 2 ρ_i (f_i − m).
     const double linear = law.smoothing * sum.by_variance;
     coordinate.correction = {
         .constant = (1.0 - coordinate.law.share) * sum.by_offset - linear * coordinate.mean,

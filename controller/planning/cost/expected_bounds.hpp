@@ -1,16 +1,17 @@
-// The smooth penalties of the bounds (penalty.hpp) in expectation over what particles stand for.
+// The smooth penalties of the bounds (penalty.hpp), in expectation over the laws that particles
+// represent.
 //
-// A hundred particles end some two deviations from their mean, while a plan's cost near a wall may
-// be made farther out. So a particle stands for more than its place: along each coordinate, with
-// the stepped particles f_i, their mean m and variance v, and the noise's deviation σ, the law of
-// the next state is taken to be
+// A hundred particles reach only some two standard deviations from their mean, while a plan's cost
+// near a wall may arise farther out. So a particle represents more than its place: along each
+// coordinate, with the stepped particles f_i, their mean m and variance v, and the noise's standard
+// deviation σ, the law of the next state is taken to be
 //
 //     m + θ (f_i − m) + √(σ² + (1 − θ²) v) z   with probability ρ_i,   z ~ N(0, 1):
 //
 // a smoothed particle measure (West 1993; Liu and West 2001), whose mean m and variance v + σ² do
 // not depend on θ. With θ = 1 it is the mixture of the particles' noise. As h is quadratic, then
-// linear, the expectation has a closed form (docs/theory/planning.md); m and v are functions of
-// the particles, and differentiated as such.
+// linear, the expectation has a closed form (docs/theory/planning.md). The gradient accounts for m
+// and v being functions of the particles.
 #pragma once
 
 #include <vector>
@@ -33,7 +34,7 @@ namespace qsmpc::controller {
 
 class ExpectedBounds {
  public:
-  /// Of penalties that are not smooth, or have no weight, nothing is taken in expectation.
+  /// For penalties that are not smooth, or have no weight, the object is empty.
   ExpectedBounds(const Box& bounds, const Penalty& penalty);
 
   [[nodiscard]] bool empty() const { return bounds_.empty(); }
@@ -45,12 +46,13 @@ class ExpectedBounds {
 
   /// Σ_i weights_i E h over all faces of the bounds for particles `points` (d x n), whose weights
   /// sum to one; the gradient is added to `gradient` (d x n). NaN where a point is not finite. The
-  /// result does not depend on `run`; allocates only for more particles than ever before.
+  /// result does not depend on `run`; allocates only when the number of particles is larger than
+  /// ever before.
   double add(const Law& law, const Points& points, const Eigen::VectorXd& weights,
              const Executor& run, Points& gradient);
 
  private:
-  /// One bounded coordinate at the particles at hand.
+  /// One bounded coordinate, for the current particles.
   struct Coordinate {
     double mean = 0.0;
     SmoothedCoordinate law;

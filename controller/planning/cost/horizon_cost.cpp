@@ -122,7 +122,7 @@ void HorizonCost::rollout(const Eigen::VectorXd& z) {
   if (!is_rolled_out(z)) forward(z);
 }
 
-/// Reads z: inputs and, where there is one, the change of the gains.
+/// Reads the inputs and, if present, the change of the gains from z.
 void HorizonCost::set_decision(const Eigen::VectorXd& z) {
   const Eigen::Index inputs = policy_.inputs.rows();
   const Eigen::Index dim = policy_.states.rows();
@@ -182,7 +182,8 @@ void HorizonCost::forward(const Eigen::VectorXd& z) {
   }
 }
 
-/// The terms at one place that can be taken of some particles, or zero where there is none.
+/// Evaluates the terms at one place that can be split by particles; without any, zeroes the
+/// gradient.
 void HorizonCost::add_terms(TermPlace place, TermBatch batch, CostParts& parts) const {
   batch.blank = true;
   for (const Term& each : terms_in_use_) {
@@ -194,7 +195,7 @@ void HorizonCost::add_terms(TermPlace place, TermBatch batch, CostParts& parts) 
   clear_if_blank(batch);
 }
 
-/// Policy, step and costs of some particles of stage k.
+/// Policy, step and costs of a range of particles of stage k.
 CostParts HorizonCost::forward_sources(Eigen::Index k, ParticleRange range) {
   Stage& stage = stages_[k];
   const Eigen::VectorXd& weights = prediction_->stages[k].weights;
@@ -222,7 +223,7 @@ CostParts HorizonCost::forward_sources(Eigen::Index k, ParticleRange range) {
   return cost;
 }
 
-/// The terms of the next state that have to see all particles of stage k.
+/// The terms of the next state that need all particles of stage k at once.
 void HorizonCost::add_terms_of_all(Eigen::Index k) {
   Stage& stage = stages_[k];
   for (const Term& each : terms_in_use_) {
@@ -237,7 +238,7 @@ void HorizonCost::add_terms_of_all(Eigen::Index k) {
   }
 }
 
-/// Some particles of stage k + 1, and the terms at them.
+/// A range of particles of stage k + 1, and the terms at them.
 CostParts HorizonCost::forward_clusters(Eigen::Index k, ParticleRange range) {
   const Stage& stage = stages_[k];
   Stage& next = stages_[k + 1];
@@ -256,8 +257,8 @@ CostParts HorizonCost::forward_clusters(Eigen::Index k, ParticleRange range) {
   return cost;
 }
 
-/// Sees to it that the first `stages` maps have their transposes, which many a prediction that is
-/// only evaluated never needs.
+/// Ensures that the first `stages` maps have their transposes. Predictions that are only evaluated
+/// never need them.
 void HorizonCost::transpose_maps(Eigen::Index stages) {
   for (; transposed_ < stages; ++transposed_) {
     const StageMap& map = prediction_->maps[transposed_];
@@ -267,7 +268,7 @@ void HorizonCost::transpose_maps(Eigen::Index stages) {
   }
 }
 
-/// From the adjoints of stage `from` and, with the cost, of all stages before it.
+/// Backward pass from the adjoints of stage `from` and, with the cost, of all earlier stages.
 void HorizonCost::backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& gradient) {
   transpose_maps(from);
   adjoints_at_hand_ = false;
@@ -297,7 +298,7 @@ void HorizonCost::backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& g
   }
 }
 
-/// Through map, step and policy, for some particles of stage k.
+/// Backwards through map, step and policy, for a range of particles of stage k.
 void HorizonCost::backward_sources(Eigen::Index k, bool with_cost, ParticleRange range,
                                    Partial& partial) {
   Stage& stage = stages_[k];
@@ -318,8 +319,8 @@ void HorizonCost::backward_sources(Eigen::Index k, bool with_cost, ParticleRange
                   with_gain_ ? partial.outer.data() : nullptr);
 }
 
-/// Through the nominal step x̄_{k+1} = f(x̄_k, v_k), and through v_k − K_k x̄_k in the policy. With
-/// a the adjoints of the inputs: sum = Σ a, outer = Σ a xᵀ.
+/// Backwards through the nominal step x̄_{k+1} = f(x̄_k, v_k), and through v_k − K_k x̄_k in the
+/// policy. With a the adjoints of the inputs: sum = Σ a, outer = Σ a xᵀ.
 void HorizonCost::backward_nominal(Eigen::Index k, const double* sum, const double* outer,
                                    Eigen::VectorXd& gradient) {
   const Eigen::Index dim = policy_.states.rows();
@@ -352,7 +353,7 @@ void HorizonCost::pull_back(Eigen::Index k, const StageSlope& slope, Eigen::Vect
   backward(k, /*with_cost=*/false, gradient);
 }
 
-/// The same where a particle depends on no other: back along its own path.
+/// The same for a particle that depends on no other: backwards along its own path.
 void HorizonCost::pull_back_alone(Eigen::Index k, const StageSlope& slope,
                                   Eigen::VectorXd& gradient) {
   const Eigen::Index inputs = policy_.inputs.rows();

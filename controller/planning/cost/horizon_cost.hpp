@@ -1,10 +1,11 @@
 // The expected cost of a policy over the horizon and its exact gradient.
 //
-// With the assignments of a prediction held, the cost is a piecewise smooth function of the nominal
-// inputs, and HorizonCost evaluates it and its exact gradient by one pass forward and one backward.
+// With the assignments of a prediction held fixed, the cost is a piecewise smooth function of the
+// nominal inputs. HorizonCost evaluates it and its exact gradient by one forward and one backward
+// pass.
 //
-// What is added up are the terms of cost_terms.hpp, each at its place in a period: at the inputs,
-// at where the step takes the particles, or at the particles that are kept.
+// The cost is the sum of the terms of cost_terms.hpp, each evaluated at its place in a period: at
+// the inputs, at the stepped particles, or at the particles after the compression.
 #pragma once
 
 #include <algorithm>
@@ -27,14 +28,14 @@ namespace qsmpc::controller {
 
 class HorizonCost {
  public:
-  /// `run` is what loops over many particles go through; results do not depend on it.
+  /// run: executor of the loops over many particles; results do not depend on it.
   explicit HorizonCost(const HorizonCostTerms& terms, Executor run = run_in_turn);
   HorizonCost(const HorizonCostTerms& terms, const Prediction& prediction, const Policy& policy);
   HorizonCost(const HorizonCostTerms& terms, const Prediction&& prediction,
               const Policy& policy) = delete;
 
-  /// From now on, holds the assignments of `prediction`, which must stay alive and unchanged, and
-  /// the gains, bounds and start of `policy`. The covariances and the target are those of the
+  /// Fixes the assignments to those of `prediction`, which must stay alive and unchanged, and the
+  /// gains, bounds and start to those of `policy`. Rereads the covariances and the target of the
   /// terms, which may have changed. Allocates only what the last prediction did not need.
   void freeze_assignments(const Prediction& prediction, const Policy& policy);
   void freeze_assignments(const Prediction&& prediction, const Policy& policy) = delete;
@@ -44,15 +45,15 @@ class HorizonCost {
   /// derivative of the clamp is zero.
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::MatrixXd& gradient);
 
-  /// The same for a decision vector z: the inputs stage by stage, and behind them either nothing
-  /// or a matrix ΔK (input_dim x state_dim, column by column) that is added to the gains of all
-  /// stages. gradient: as z, sized by the caller.
+  /// The same for a decision vector z: the inputs stage by stage, optionally followed by a matrix
+  /// ΔK (input_dim x state_dim, column-major) that is added to the gains of all stages. gradient:
+  /// as z, sized by the caller.
   double evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient);
 
-  /// The cost alone, of which `parts` tells more.
+  /// The cost without gradient; `parts` has its parts.
   double evaluate(const Eigen::VectorXd& z);
 
-  /// Moves the particles to where `z` puts them, unless they are there.
+  /// Rolls out the particles under `z`, unless they are up to date.
   void rollout(const Eigen::VectorXd& z);
 
   /// The parts of the value last computed.
@@ -62,14 +63,14 @@ class HorizonCost {
   [[nodiscard]] const Points& particles(Eigen::Index k) const { return stages_[k].points; }
 
   /// The gradient, with respect to the decision last evaluated, of a function of the particles of
-  /// stage k ≥ 1 that has this slope; as in `evaluate`.
+  /// stage k ≥ 1 with derivative `slope`; `gradient` as in `evaluate`.
   void pull_back(Eigen::Index k, const StageSlope& slope, Eigen::VectorXd& gradient);
 
  private:
   // Scratch of one stage; stage 0 … horizon.
   struct Stage {
     Points points;   // c
-    Points adjoint;  // of c; after a forward pass that of the terms at the particles
+    Points adjoint;  // of c; after a forward pass, only of the terms at the particles
     PackedPoints packed_adjoint;
     SparseMatrix transposed;  // shares of the map to the next stage, once a gradient is asked for
     Points inputs;            // u at the points
@@ -79,10 +80,10 @@ class HorizonCost {
     PackedPoints packed_stepped;
     Points state_gradient;  // of the terms at f
     Points stepped_adjoint;
-    Points pulled;             // of c, through f alone
+    Points pulled;             // of c, through f only
     Eigen::VectorXd constant;  // v − K x̄
   };
-  // What one chunk of particles adds to sums.
+  // The contributions of one chunk of particles to sums.
   struct Partial {
     CostParts cost;
     Eigen::VectorXd inputs;  // Σ a
@@ -122,13 +123,13 @@ class HorizonCost {
   std::vector<Eigen::MatrixXd> gains_;  // as held, without ΔK
   bool with_gain_ = false;              // whether the decision has a ΔK
   bool closed_loop_ = false;            // whether any gain is not zero
-  bool lone_ = false;                   // whether no particle ever meets another
-  std::vector<double> decision_;        // that the stages belong to …
+  bool lone_ = false;                   // whether no step compresses the particles
+  std::vector<double> decision_;        // that the stages are rolled out for …
   bool rolled_out_ = false;             // … if any
   Eigen::Index transposed_ = 0;         // maps whose transposes the stages have
   bool adjoints_at_hand_ = false;       // whether the adjoints are still those of the terms
   CostParts parts_;
-  CostParts fixed_;  // what no decision changes
+  CostParts fixed_;  // the part that no decision changes
   std::vector<Stage> stages_;
   std::vector<Partial> partials_;
   Eigen::VectorXd flat_;  // scratch of the matrix form of `evaluate`

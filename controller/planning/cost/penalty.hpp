@@ -1,14 +1,14 @@
 // Penalties that keep particles out of the unsafe set; terms of the cost (cost_terms.hpp).
 //
 // `thesis` is Algorithm 2 and Eq. 4-10 as printed: flat inside an obstacle, so that a particle in
-// it is not pushed out, and with a halo of one unit whatever the unit is. `smooth` is the default:
+// it is not pushed out, and with a halo one unit wide, whatever the unit. `smooth` is the default:
 // with s the signed distance to a face of the bounds or to an obstacle (negative beyond or inside)
 // and ℓ a stated length, the sum over all of them of
 //
 //     h(s) = 0 for s ≥ ℓ,  ½ (1 − s/ℓ)² for 0 ≤ s ≤ ℓ,  ½ − s/ℓ for s ≤ 0:
 //
 // continuously differentiable, ½ on the boundary, and growing with the depth inside, so that the
-// gradient points the way out from everywhere.
+// gradient points outwards from everywhere.
 #pragma once
 
 #pragma GCC visibility push(default)

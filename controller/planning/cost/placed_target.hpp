@@ -1,5 +1,4 @@
-// What a cost is about in the plan at hand: the target, or what comes next of a path or
-// of waypoints.
+// The reference of a plan's cost: the target, the next part of a path, or the next waypoint.
 #pragma once
 
 #include <optional>
@@ -12,10 +11,10 @@
 
 namespace qsmpc::controller {
 
-/// Makes the targets of `weights` those of a plan from `state` (state_dim): settings.cost.target,
-/// nearest modulo 2π, or the next of settings.waypoints after `progress` of them (without it, the
-/// first), or along settings.path from `progress` on (m; without it, from where the state is
-/// nearest to the path). Allocates in the first plan only.
+/// Sets the targets of `weights` for a plan from `state` (state_dim): settings.cost.target, nearest
+/// modulo 2π; or the next of settings.waypoints after `progress` of them (if empty, the first); or
+/// along settings.path from `progress` on (m; if empty, from the place nearest to the state).
+/// Allocates in the first plan only.
 void place_target(const PlannerSettings& settings, const models::SystemDescription& system,
                   const Eigen::VectorXd& state, std::optional<double> progress,
                   QuadraticCost& weights);

@@ -39,7 +39,7 @@ class PrintedPenaltyLoops {
       const Vector x = coordinate(load_at, face.axis, i);
       const Excess out = excess(face, x);
       const Vector weight = scale * load_at(weight_ + i);
-      // NaN must not be lost in the comparisons.
+      // x − x propagates NaN, which the comparisons would lose.
       sum.add(part, weight * (out.value + (x - x)));
       add(load_at, store_at, face.axis, i, weight * out.slope);
     });
@@ -89,7 +89,7 @@ class PrintedPenaltyLoops {
     store_at(load_at(at) + value, at);
   }
 
-  /// How far x is outside the face's interval, and the derivative of it (Eq. 4-10).
+  /// Distance of x outside the face's interval, and its derivative (Eq. 4-10).
   HWY_INLINE Excess excess(const AxisInterval& face, Vector x) const {
     const Vector below = positive(constant(face.lower) - x);
     const Vector above = positive(x - constant(face.upper));

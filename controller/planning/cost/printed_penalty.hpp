@@ -9,12 +9,12 @@
 
 namespace qsmpc::controller {
 
-/// `scale` times how far each particle is outside of each interval.
+/// `scale` times the weighted sum of the distances of the particles outside each interval.
 double printed_bounds_penalty(const std::vector<AxisInterval>& bounds, double scale,
                               const TermBatch& batch);
 
-/// `scale` times the largest indicator of an obstacle at each particle: 1 inside, and falling to 0
-/// over one unit outside. obstacles: the intervals in which each is bounded.
+/// `scale` times the weighted sum over the particles of the largest obstacle indicator: 1 inside,
+/// falling to 0 over one unit outside. obstacles: the bounded intervals of each.
 double printed_obstacle_penalty(const std::vector<std::vector<AxisInterval>>& obstacles,
                                 double scale, const TermBatch& batch);
 

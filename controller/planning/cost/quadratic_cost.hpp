@@ -1,4 +1,4 @@
-// The weights of the quadratic cost, and what it is about.
+// The weights and targets of the quadratic cost.
 #pragma once
 
 #include <vector>
@@ -15,11 +15,11 @@ struct QuadraticCost {
   Eigen::MatrixXd input;     ///< R, input_dim x input_dim
   Eigen::MatrixXd terminal;  ///< Q_term, state_dim x state_dim
   Eigen::VectorXd target;    ///< r, state_dim
-  /// States whose target is meant modulo 2π. A planner shifts the target, for each plan, to what is
-  /// nearest to the belief's mean; HorizonCost takes it as it is.
+  /// States whose target is meant modulo 2π. For each plan, a planner shifts the target to its
+  /// equivalent nearest to the belief's mean; HorizonCost takes it as it is.
   std::vector<int> angles{};
-  /// Where the target moves: r of each stage, state_dim x (horizon + 1). Without a column it is
-  /// `target` at all of them.
+  /// For a moving target: r of each stage, state_dim x (horizon + 1). Without columns, r is
+  /// `target` at every stage.
   Eigen::MatrixXd stage_targets{};
 
   /// r of a stage, 0 … horizon; refers to this.

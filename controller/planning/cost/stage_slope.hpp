@@ -8,7 +8,7 @@ namespace qsmpc::controller {
 
 /// The derivative of a function of the particles of one stage.
 struct StageSlope {
-  std::vector<Eigen::Index> particles;  ///< those that it depends on
+  std::vector<Eigen::Index> particles;  ///< those on which it depends
   Eigen::MatrixXd by_particle;          ///< state_dim x as many
 };
 

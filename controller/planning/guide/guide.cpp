@@ -13,14 +13,15 @@
 namespace qsmpc::controller {
 namespace {
 
-// Nodes along the longer side of the bounds.
+// Number of grid spacings along the longer side of the bounds.
 constexpr double kNodes = 160.0;
-// Of a plan, where no limit says how likely it may be unsafe.
+// Risk allowed to a plan without a risk limit.
 constexpr double kUsualRisk = 0.05;
-// How much dearer than the cheapest way a straight line may be: of it, and in spacings of the grid.
+// How much more a straight line may cost than the cheapest way: a factor, plus spacings of the
+// grid.
 constexpr double kDetour = 1.05;
 constexpr double kSlack = 1.0;
-// The heading at an aim is that of the way as far as this beyond it, in spacings.
+// The heading at an aim points towards the node of the way that is this many nodes farther on.
 constexpr std::ptrdiff_t kOnwards = 10;
 
 void require_plane(const models::SystemDescription& system, const SafeSet& safe_set) {
@@ -47,12 +48,12 @@ double allowed_risk(const PlannerSettings& settings) {
   return std::isfinite(plan) && plan > 0.0 ? std::min(plan, 1.0) : kUsualRisk;
 }
 
-/// Of a metre at each node: 1, and once more for each time that the vehicle's risk there, as often
-/// as a plan has stages, would spend what a plan may.
+/// Price of a metre at each node: 1 + horizon · (vehicle's risk at the node) / (risk allowed to a
+/// plan).
 Eigen::ArrayXXd prices_on(const PlaneGrid& grid, const models::Dynamics& dynamics,
                           const PlannerSettings& settings) {
   const models::SystemDescription& system = dynamics.description();
-  // The way is found once: round what stands.
+  // The way is computed once, so only round static obstacles.
   const UnsafeSet unsafe(standing(settings.safe_set));
   double radius = 0.0;
   for (const Disc& disc : settings.safe_set.body.discs) radius = std::max(radius, disc.radius);

@@ -18,7 +18,7 @@ using Node = std::pair<Eigen::Index, Eigen::Index>;  // column, row
 constexpr std::array<Node, 4> kBeside = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
 constexpr std::array<Node, 8> kAround = {
     {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
-// A straight line is sampled this often in the spacing of the grid.
+// Samples of a straight line per spacing of the grid.
 constexpr double kSamplesPerSpacing = 2.0;
 
 }  // namespace

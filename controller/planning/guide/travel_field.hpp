@@ -1,5 +1,5 @@
-// The cheapest way to a goal from everywhere in a rectangle of the plane, where a metre costs more
-// in some places than in others.
+// The cheapest way to a goal from anywhere in a rectangle of the plane, where the price of a metre
+// varies with the place.
 //
 //   const TravelField field(grid, prices, goal);
 //   field.cost(position);         // of the cheapest way to the goal
@@ -30,15 +30,16 @@ struct PlaneGrid {
 
 class TravelField {
  public:
-  /// prices: of a metre at each node, columns x rows, finite and > 0. The goal counts as the
-  /// nearest point of the grid. Throws std::invalid_argument on prices of another size or sign.
+  /// prices: of a metre at each node, columns x rows, finite and > 0. The goal is moved to the
+  /// nearest point of the grid. Throws std::invalid_argument on prices of another size, not finite
+  /// or not > 0.
   TravelField(const PlaneGrid& grid, Eigen::ArrayXXd prices, const Eigen::Vector2d& goal);
 
-  /// Of the cheapest way from `position` to the goal; from the grid's nearest point where that is
-  /// outside of it. Accurate to a few per cent, as the method is of first order.
+  /// The cost of the cheapest way from `position`, or the grid's nearest point if that is outside,
+  /// to the goal. Accurate to a few per cent, as the method is first-order.
   [[nodiscard]] double cost(const Eigen::Vector2d& position) const;
 
-  /// Of the straight line between two points; what is more than `enough` need not be worked out.
+  /// The cost of the straight line between two points; may stop early once it exceeds `enough`.
   [[nodiscard]] double cost_of_line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                                     double enough) const;
 
@@ -52,7 +53,7 @@ class TravelField {
   struct Cell {
     Eigen::Index column = 0;
     Eigen::Index row = 0;
-    double right = 0.0;  // share of the neighbours at column + 1
+    double right = 0.0;  // weight of the neighbours at column + 1
     double up = 0.0;
   };
 

@@ -12,13 +12,13 @@
 namespace qsmpc::controller {
 namespace {
 
-// Risks below e to this are as good as none.
+// Risks below e to this power count as zero.
 constexpr double kLeastLog = -60.0;
 
 double log_ratio(double risk, double limit) {
   if (std::isnan(risk)) return risk;
   if (!(risk > 0.0)) return kLeastLog;
-  // Of a limit of 0 nothing but 0 is within.
+  // Only a risk of 0 keeps a limit of 0.
   return std::max(kLeastLog, std::log(risk) - std::log(std::max(limit, 1e-300)));
 }
 
@@ -45,7 +45,7 @@ RiskConstraint::RiskConstraint(const models::Dynamics& dynamics, const PlannerSe
 
 void RiskConstraint::set_limits(const RiskLimits& limits, Eigen::Index period) {
   limits_ = limits;
-  // Every probability is within 1.
+  // A limit of 1 or more is always kept.
   for (double* limit : {&limits_.first, &limits_.stage, &limits_.plan}) {
     if (*limit >= 1.0) *limit = kInfinity;
   }
@@ -66,7 +66,7 @@ PredictedMotion RiskConstraint::motion_of(const Gaussian& belief, const Policy& 
   if (settings_.model_error) {
     motion.model_error = &*settings_.model_error;
     motion.first_period = period_;
-    // From the second period on the belief is the model's prediction for the plant.
+    // From the second period on, the belief is the model's prediction for the plant.
     if (period_ > 0) motion.belief_error = &settings_.model_error->of_period(period_ - 1);
   }
   return motion;
@@ -88,7 +88,7 @@ void RiskConstraint::certify(const Gaussian& belief, const Policy& policy, PlanR
   const Eigen::VectorXd z = policy.inputs.reshaped();
   const double margin = margin_;
   margin_ = 0.0;
-  // Calibrated, the model's risks are those certified; beyond 1 they say how far.
+  // After calibration the model's risks equal the certificates; beyond 1 they measure the depth.
   out.severity = values_.size() > 0 ? values(z).maxCoeff() : kLeastLog;
   if (std::isnan(out.severity)) out.severity = -kLeastLog;
   margin_ = margin;
@@ -121,7 +121,7 @@ double RiskConstraint::excess(const std::vector<double>& stages) const {
   return excess(stages, sum_of(stages));
 }
 
-/// plan: what is certified of any stage.
+/// plan: the certificate of any stage.
 double RiskConstraint::excess(const std::vector<double>& stages, double plan) const {
   double excess = kLeastLog;
   if (std::isfinite(limits_.first)) {
@@ -137,7 +137,7 @@ double RiskConstraint::excess(const std::vector<double>& stages, double plan) co
   return excess;
 }
 
-/// What is certified decides whether the limits are kept.
+/// The certificates, not the model, decide whether the limits are kept.
 void RiskConstraint::judge(PlanRisk& out) const {
   const double certified = excess(out.stages);
   out.kept = certified <= 0.0;
@@ -168,7 +168,7 @@ void RiskConstraint::add_gradient(const Eigen::VectorXd& multipliers, Eigen::Vec
   if (multipliers.isZero(0.0)) return;
   const Eigen::Index horizon = model_.horizon();
   weights_.setZero(horizon);
-  // What was evaluated last is still at hand.
+  // The last evaluation is still cached.
   const Eigen::VectorXd& risks = model_.last_risks();
   const auto share = [&](double multiplier, double risk) {
     return multiplier > 0.0 && risk > 0.0 ? multiplier / risk : 0.0;

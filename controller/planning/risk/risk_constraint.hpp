@@ -20,38 +20,40 @@ namespace qsmpc::controller {
 
 class RiskConstraint final : public SummedConstraints {
  public:
-  /// Refers to both.
+  /// Keeps references to both.
   RiskConstraint(const models::Dynamics& dynamics, const PlannerSettings& settings);
 
-  /// Of the plan that is made in period `period` of a drive, from now on.
+  /// Sets the limits of the plan made in period `period` of a drive.
   void set_limits(const RiskLimits& limits, Eigen::Index period);
   [[nodiscard]] const RiskLimits& limits() const { return limits_; }
 
-  /// Certifies `policy` from `belief`, and holds its surrogate, calibrated, from now on.
+  /// Certifies `policy` from `belief`, and holds its calibrated surrogate.
   void certify(const Gaussian& belief, const Policy& policy, PlanRisk& out);
-  /// Where `risk`, certified for `policy`, exceeds its limits by the sum of the stages: judges it
-  /// by first entries (first_entry.hpp), which are less. Returns whether it is within its limits.
+  /// If `risk`, certified for `policy`, exceeds its limits by the sum over the stages: re-evaluates
+  /// it by the tighter first-entry bounds (first_entry.hpp). Returns whether it is within its
+  /// limits.
   bool count_entries(const Gaussian& belief, const Policy& policy, PlanRisk& risk) const;
-  /// log(certificate / limit) of the limit that `policy` exceeds most; holds nothing.
+  /// log(certificate / limit) of the limit that `policy` exceeds most; does not change the held
+  /// surrogate.
   [[nodiscard]] double excess(const Gaussian& belief, const Policy& policy) const;
-  /// The same of a policy that has been certified (stages 1 … horizon).
+  /// The same for the certificates of a policy (stages 1 … horizon).
   [[nodiscard]] double excess(const std::vector<double>& stages) const;
   /// Holds the surrogate of `policy` with the factors of the last calibration.
   void hold(const Gaussian& belief, const Policy& policy);
-  /// For a new plan that goes on from the last, or does not: factors of the calibration move on, or
-  /// are forgotten.
+  /// Prepares for a new plan. warm: it continues the last one, and the calibration factors are
+  /// shifted by one stage; else they are forgotten.
   void start(bool warm);
 
-  /// How much more than the limits say is asked for, in logarithms.
+  /// By how much the limits are tightened, in log risk.
   [[nodiscard]] double margin() const { return margin_; }
   void set_margin(double margin) { margin_ = margin; }
 
   [[nodiscard]] Eigen::Index count() const override { return values_.size(); }
   /// c at a decision.
   const Eigen::VectorXd& values(const Eigen::VectorXd& z) override;
-  /// Adds Σ_j multipliers_j ∂c_j/∂z at the decision last asked for.
+  /// Adds Σ_j multipliers_j ∂c_j/∂z at the decision of the last call of `values`.
   void add_gradient(const Eigen::VectorXd& multipliers, Eigen::VectorXd& gradient) override;
-  /// ½ Σ max(0, c)² and its gradient, which is added, times `scale`.
+  /// `scale` times ½ Σ max(0, c)²; adds its gradient unless null.
   double add_excess(const Eigen::VectorXd& z, double scale, Eigen::VectorXd* gradient);
   /// The logarithm of the sum of all stages' risks, and its gradient (overwritten).
   double log_total(const Eigen::VectorXd& z, Eigen::VectorXd& gradient);
@@ -68,7 +70,7 @@ class RiskConstraint final : public SummedConstraints {
   RiskLimits limits_;
   Eigen::Index period_ = 0;
   double margin_ = 0.0;
-  Prediction no_particles_;  // of which surrogates need none
+  Prediction no_particles_;  // surrogates need none
   Eigen::VectorXd values_;
   Eigen::VectorXd weights_;
   Eigen::VectorXd multipliers_;

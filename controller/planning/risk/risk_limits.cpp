@@ -5,7 +5,7 @@
 namespace qsmpc::controller {
 
 bool RiskLimits::any() const {
-  // Every probability is within 1.
+  // A limit of 1 or more is always kept.
   return first < 1.0 || stage < 1.0 || plan < 1.0;
 }
 

@@ -1,4 +1,4 @@
-// Limits of a plan's certified risk, and what a plan's certificates come to.
+// Limits of a plan's certified risk, and the certificates of a plan.
 #pragma once
 
 #include <limits>
@@ -10,21 +10,21 @@
 
 namespace qsmpc::controller {
 
-/// Upper limits of certified probabilities; infinite where there is none.
+/// Upper limits on certified probabilities; infinite for none.
 struct RiskLimits {
-  double first = std::numeric_limits<double>::infinity();  ///< of the next stage alone
+  double first = std::numeric_limits<double>::infinity();  ///< of the next stage only
   double stage = std::numeric_limits<double>::infinity();  ///< of each stage
   double plan = std::numeric_limits<double>::infinity();   ///< of any stage
 
   [[nodiscard]] bool any() const;
 };
 
-/// What is done where no plan within the limits is found.
+/// What to do if no plan within the limits is found.
 enum class RiskOtherwise {
   kLeastRisk,  ///< the plan with the least certificate
   kBrake,      ///< the plan that comes to rest soonest
-  kPrevious,   ///< the last plan within its limits goes on
-  kModel,      ///< the plan within the limits for the model alone, without its error
+  kPrevious,   ///< continue the last plan that was within its limits
+  kModel,      ///< the plan within the limits for the model without its error
 };
 
 struct RiskOtherwiseEntry {
@@ -39,15 +39,15 @@ struct RiskOtherwiseEntry {
 /// Throws std::invalid_argument on an unknown name.
 [[nodiscard]] RiskOtherwise risk_otherwise(std::string_view name);
 
-/// The certificates of a plan, as the planner works them out: by C3 and C4.
+/// The certificates of a plan as computed by the planner: by C3 and C4.
 struct PlanRisk {
   std::vector<double> stages;  ///< of stages 1 … horizon; empty where there are no limits
-  double plan = 1.0;           ///< of any stage: their sum, or what was less, at most 1
-  bool kept = true;            ///< whether all limits are, by what is certified
-  /// log(certificate / limit) of the limit that is exceeded most, as far as certificates are made
-  /// of what the plan can change: −infinity where none is. Deep inside the unsafe set, where
-  /// certificates are 1, by how deep, so that the worse of two is told; and a certificate that says
-  /// nothing, far from everything unsafe, counts for the surrogate's own probability.
+  double plan = 1.0;           ///< of any stage: their sum or a lower bound in its place, at most 1
+  bool kept = true;            ///< whether the certificates keep all limits
+  /// log(certificate / limit) of the limit exceeded most, counting only what the plan can change;
+  /// −infinity without limits. Deep inside the unsafe set, where certificates are 1, it measures
+  /// the depth, so that plans remain comparable; an uninformative certificate, far from everything
+  /// unsafe, is replaced by the surrogate's own probability.
   double severity = -std::numeric_limits<double>::infinity();
 };
 

@@ -8,14 +8,16 @@
 namespace qsmpc::controller {
 namespace {
 
-// A factor is at least this: a box has less than the half-space that holds it, but not nothing.
+// Lower limit of the factors: a box has less probability than a half-space containing it, but not
+// none.
 constexpr double kLeastFactor = 0.02;
-// A certificate from here on that is this many times its tails says nothing of the plan: no detour
-// would lower it. So many times the tails, and this beside them, stand for it.
+// A certificate of at least kSaysNothing that is more than kMostFactor times its tails is
+// uninformative about the plan: no detour would lower it. It is replaced by kMostFactor times the
+// tails plus kFloorOfNothing.
 constexpr double kSaysNothing = 0.1;
 constexpr double kMostFactor = 100.0;
 constexpr double kFloorOfNothing = 1e-3;
-// Where it is less than that, a factor may be as large as this.
+// Upper limit of the factors of certificates below kSaysNothing.
 constexpr double kAnyFactor = 1e6;
 
 /// B times the slopes of the clamps under the surrogate's law at a stage.
@@ -80,7 +82,7 @@ void RiskModel::hold(const PredictedMotion& motion, const std::vector<SurrogateS
   }
 }
 
-/// How the discs lie about a surrogate of this law, and their laws.
+/// Places the discs for a surrogate with this law, and computes their laws.
 void RiskModel::hold_discs(const Gaussian& law, Held& held) const {
   held.reach.clear();
   held.turn.clear();
@@ -178,7 +180,7 @@ void RiskModel::roll_out(const Eigen::VectorXd& z) {
   }
 }
 
-/// Tails of stage k + 1 with their derivatives by its mean and, where the gains change it, by its
+/// Tails of stage k + 1, with their derivatives by its mean and, if the gains change it, by its
 /// covariance.
 void RiskModel::add_tails(Eigen::Index k) {
   Evaluated& stage = stages_[k];
@@ -249,7 +251,7 @@ void RiskModel::add_gradient(const Eigen::VectorXd& weights, Eigen::VectorXd& gr
   if (decision_.size() > inputs_ * horizon()) pull_back_gains(weights, gradient);
 }
 
-/// By the change of the gains, through the covariances.
+/// Adds the derivative by the change of the gains, through the covariances.
 void RiskModel::pull_back_gains(const Eigen::VectorXd& weights, Eigen::VectorXd& gradient) {
   const Eigen::Index dim = start_.size();
   const Eigen::Map<const Eigen::MatrixXd> change(decision_.data() + inputs_ * horizon(), inputs_,
@@ -259,7 +261,7 @@ void RiskModel::pull_back_gains(const Eigen::VectorXd& weights, Eigen::VectorXd&
   for (Eigen::Index k = horizon() - 1; k >= 0; --k) {
     const Held& held = held_[k];
     if (!stages_[k].by_gains) {
-      // The covariance after this step was held.
+      // The covariance after this step is held constant.
       by_covariance.setZero();
       continue;
     }

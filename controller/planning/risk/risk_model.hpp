@@ -1,10 +1,11 @@
 // The certified risk of each stage as a smooth function of a plan's decision, with an exact
-// gradient: what the optimiser limits between two certifications. Derivation:
+// gradient; the optimiser constrains it between two certifications. Derivation:
 // docs/theory/planning.md, "Risk".
 //
-// Of the surrogate of a plan it holds, at each stage, how far the mean is from the noise-free
-// path, the covariance (a function of a change of the gains, where these are decided), the turn of
-// each disc, and the factor that makes the tails what was certified. The noise-free path moves.
+// From a plan's surrogate it holds, for each stage, the offset of the mean from the noise-free
+// path, the covariance (a function of the gain change, if that is part of the decision), the
+// linearised rotation of each disc, and the factor that scales the tails to the certificate. Only
+// the noise-free path varies.
 #pragma once
 
 #include <vector>
@@ -22,25 +23,25 @@ namespace qsmpc::controller {
 
 class RiskModel {
  public:
-  /// Refers to both.
+  /// Keeps references to both.
   RiskModel(const models::Dynamics& dynamics, const UnsafeSet& unsafe);
 
-  /// Holds the surrogate of `motion` from now on. Factors stay what they are.
+  /// Holds the surrogate of `motion`. The factors are unchanged.
   void hold(const PredictedMotion& motion, const std::vector<SurrogateStage>& surrogates);
-  /// Makes the risks at the plan that is held what was certified for it (stages 1 … horizon); where
-  /// that is 1, they say how deep it is.
+  /// Scales the risks so that at the held plan they equal the certificates (stages 1 … horizon);
+  /// where these are 1, the risks measure the depth.
   void calibrate(const std::vector<double>& certified);
-  /// The factors of each stage become those of the next one: the plan has moved on.
+  /// Shifts the factors by one stage, as the plan moves on: each stage takes those of the next.
   void shift_factors();
   /// All factors become 1.
   void forget_factors();
 
-  /// Risks of stages 1 … horizon for a decision as HorizonCost takes it: inputs stage by stage, and
-  /// behind them nothing or a change of all gains. ≥ 0; more than 1 deep in the unsafe set.
+  /// Risks of stages 1 … horizon for a decision as in HorizonCost: inputs stage by stage,
+  /// optionally followed by a change of all gains. ≥ 0; more than 1 deep in the unsafe set.
   const Eigen::VectorXd& risks(const Eigen::VectorXd& z);
-  /// What it returned last.
+  /// The last result of `risks`.
   [[nodiscard]] const Eigen::VectorXd& last_risks() const { return risks_; }
-  /// Adds Σ_k weights_k ∂risk_k/∂z, at the decision last asked for.
+  /// Adds Σ_k weights_k ∂risk_k/∂z at the decision of the last call of `risks`.
   void add_gradient(const Eigen::VectorXd& weights, Eigen::VectorXd& gradient);
 
   [[nodiscard]] Eigen::Index horizon() const { return static_cast<Eigen::Index>(held_.size()); }
@@ -48,16 +49,16 @@ class RiskModel {
  private:
   /// Stage k + 1, and the step to it.
   struct Held {
-    Eigen::VectorXd shift;              ///< of the mean from the noise-free path
-    Eigen::MatrixXd covariance;         ///< with the gains as they are
+    Eigen::VectorXd shift;              ///< offset of the mean from the noise-free path
+    Eigen::MatrixXd covariance;         ///< with unchanged gains
     Eigen::MatrixXd transition;         ///< of the step
     Eigen::MatrixXd by_gain;            ///< of the step: B times the slopes of the clamps
     std::vector<double> reach;          ///< of each disc, shrunk by the heading's spread
     std::vector<Eigen::MatrixXd> turn;  ///< of each disc: its law's covariance is turn S turnᵀ
-    std::vector<Gaussian> laws;         ///< of each disc, about whatever mean
+    std::vector<Gaussian> laws;         ///< of each disc; the mean is set on evaluation
     bool finite = true;                 ///< whether their covariances are
   };
-  /// What a risk is made of at the decision at hand.
+  /// The ingredients of a risk at the current decision.
   struct Evaluated {
     Eigen::VectorXd mean;
     Eigen::MatrixXd covariance;
@@ -83,14 +84,14 @@ class RiskModel {
   Eigen::MatrixXd first_covariance_;
   Eigen::MatrixXd noise_;
   Eigen::VectorXd start_;
-  Eigen::VectorXd decision_;  // at hand; empty if none
+  Eigen::VectorXd decision_;  // current; empty if none
   Eigen::VectorXd held_decision_;
   Eigen::Index inputs_ = 0;
-  models::StateBatch path_;  // the noise-free path, a column a stage
+  models::StateBatch path_;  // the noise-free path, one column per stage
   Eigen::VectorXd risks_;
   TailSum tails_;
-  Gaussian changed_law_;  // of a disc, where the gains change it
-  // Scratch of the backward pass, of one column.
+  Gaussian changed_law_;  // of a disc, under changed gains
+  // Scratch of the backward pass, one column each.
   models::StateBatch state_;
   models::StateBatch input_;
   models::StateBatch next_;

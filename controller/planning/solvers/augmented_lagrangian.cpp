@@ -7,16 +7,17 @@
 namespace qsmpc::controller {
 namespace {
 
-// ρ of a cold start, as a share of the cost: a risk e times too large then costs half as much.
+// ρ of a cold start, as a share of the cost: c = 1, a risk e times too large, then costs half that
+// share.
 constexpr double kWeightShare = 0.02;
-// ρ grows by this where a minimisation leaves more than this share of the violation before.
+// ρ grows by kGrowth if a minimisation leaves more than the share kEnough of the last violation.
 constexpr double kGrowth = 5.0;
 constexpr double kEnough = 0.3;
 // ρ stays within these shares of the cost.
 constexpr double kLeastWeightShare = 1e-3;
 constexpr double kMostWeightShare = 10.0;
-// A multiplier of a constraint that has room is worth another minimisation if it pushes for more
-// than this share of the cost.
+// An inactive constraint warrants another minimisation if its multiplier times its slack exceeds
+// about this share of the cost.
 constexpr double kIdlePush = 1e-4;
 
 }  // namespace

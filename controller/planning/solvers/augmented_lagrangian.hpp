@@ -1,4 +1,4 @@
-// Inequality constraints for solvers that take none: the augmented Lagrangian
+// Inequality constraints for solvers that support none: the augmented Lagrangian
 //     J(z) + Σ_j [max(0, λ_j + ρ c_j(z))² − λ_j²] / 2ρ
 // (Hestenes, Powell, Rockafellar), minimised again with λ_j ← max(0, λ_j + ρ c_j) until the
 // constraints are kept.
@@ -8,8 +8,9 @@
 
 namespace qsmpc::controller {
 
-/// Constraints c(z) ≤ 0 of which only sums of gradients are asked for, however many there are. They
-/// should be scaled so that 1 is as much beyond a constraint as a solution may pass on its way.
+/// Constraints c(z) ≤ 0 for which only weighted sums of gradients are needed, however many there
+/// are. They should be scaled so that 1 is the largest acceptable violation on the way to a
+/// solution.
 class SummedConstraints {
  public:
   SummedConstraints() = default;
@@ -22,27 +23,28 @@ class SummedConstraints {
   [[nodiscard]] virtual Eigen::Index count() const = 0;
   /// c at a decision; valid until the next call.
   virtual const Eigen::VectorXd& values(const Eigen::VectorXd& z) = 0;
-  /// Adds Σ_j multipliers_j ∂c_j/∂z at the decision last asked for.
+  /// Adds Σ_j multipliers_j ∂c_j/∂z at the decision of the last call of `values`.
   virtual void add_gradient(const Eigen::VectorXd& multipliers, Eigen::VectorXd& gradient) = 0;
 };
 
 class AugmentedLagrangian {
  public:
-  /// For a plan whose cost is about `cost`, with `constraint`, which must stay alive. warm: goes on
-  /// with the multipliers of the last plan, a stage later; else with none.
+  /// Starts a plan whose cost is roughly `cost`, with `constraint`, which must stay alive. warm:
+  /// continues with the multipliers of the last plan (see `shift`); else they start at zero.
   void start(SummedConstraints& constraint, double cost, bool warm);
 
-  /// Multipliers of 0, at the weight that the constraints have come to.
+  /// Resets the multipliers to 0, but keeps the weight ρ.
   void release() { multipliers_.setZero(); }
-  /// The multipliers, for constraints of which `of_stage` stand for each stage, move on by one
-  /// stage; those of the last are held.
+  /// Shifts the multipliers by one stage, for `of_stage` constraints per stage; those of the last
+  /// stage are kept.
   void shift(Eigen::Index of_stage);
 
-  /// What the constraints add to the cost at z; their part of the gradient is added to it.
+  /// Returns the constraints' contribution to the cost at z, and adds its gradient to `gradient`.
   double add(const Eigen::VectorXd& z, Eigen::VectorXd& gradient);
 
   /// New multipliers after a minimisation that ended at z. Returns whether another one should
-  /// follow: a constraint is not kept to `tolerance`, or one that has room still pushes.
+  /// follow: a constraint is violated by more than `tolerance`, or an inactive one still has a
+  /// significant multiplier.
   [[nodiscard]] bool update(const Eigen::VectorXd& z, double tolerance);
 
  private:

@@ -7,12 +7,12 @@
 namespace qsmpc::controller {
 namespace {
 
-// Projected Newton steps in one programme. Each settles part of the active set; a step that is not
-// optimal yet is a descent direction all the same.
+// Projected Newton steps per programme. Each identifies part of the active set; even a step that is
+// not yet optimal is a descent direction.
 constexpr int kMostSteps = 8;
 // Halvings of one projected step.
 constexpr int kMostHalvings = 8;
-// Fraction of the promised decrease that a projected step must bring (Armijo).
+// Fraction of the predicted decrease that a projected step must achieve (Armijo).
 constexpr double kSufficientShare = 0.1;
 
 }  // namespace

@@ -1,10 +1,10 @@
-// A small convex quadratic programme in a box, solved by projected Newton steps.
+// A small convex quadratic programme with box constraints, solved by projected Newton steps.
 //
 //   minimise  gᵀd + ½ dᵀBd   subject to  lower ≤ d ≤ upper,  lower ≤ 0 ≤ upper.
 //
 // As Bertsekas (1982, Projected Newton Methods for Optimization Problems with Simple Constraints):
-// entries at a bound with the slope pushing outwards are held, the others take the Newton step of
-// the block that is theirs, and the step is projected.
+// entries at a bound whose slope points outwards are held, the others take the Newton step of their
+// block of the Hessian, and the step is projected.
 #pragma once
 
 #include <vector>
@@ -18,14 +18,14 @@ class BoxQp {
   /// Scratch for n entries; allocates only if n has changed.
   void resize(Eigen::Index n);
 
-  /// `hessian` (n x n) is symmetric; bounds may be infinite. False if it is not positive definite
-  /// on the free entries; then `step` is of no use. Otherwise `step` gives a value below zero,
-  /// unless zero is optimal. Allocates nothing.
+  /// `hessian` (n x n) is symmetric; bounds may be infinite. Returns false if it is not positive
+  /// definite on the free entries; then `step` is not usable. Otherwise `step` has a value below
+  /// zero, unless zero is optimal. Allocates nothing.
   [[nodiscard]] bool solve(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradient,
                            const Eigen::VectorXd& lower, const Eigen::VectorXd& upper,
                            Eigen::VectorXd& step);
 
-  /// gᵀd + ½ dᵀBd of the step last found: what it promises, negative.
+  /// gᵀd + ½ dᵀBd of the last step found: the predicted change, negative.
   [[nodiscard]] double value() const { return value_; }
 
  private:
@@ -37,7 +37,7 @@ class BoxQp {
                              Eigen::VectorXd& step);
 
   std::vector<Eigen::Index> free_;
-  Eigen::VectorXd factor_;     // the free block's Cholesky factor, its columns one by one
+  Eigen::VectorXd factor_;     // Cholesky factor of the free block, column-major
   Eigen::VectorXd direction_;  // of the free entries
   Eigen::VectorXd trial_;
   Eigen::VectorXd curved_;  // Bd of the trial

@@ -7,8 +7,8 @@ namespace qsmpc::controller {
 namespace {
 
 // A start nearer to a bound than this fraction of the range is moved inwards: on the flat ends of
-// the sigmoid the gradient vanishes and the solver could not leave the bound again. Where only one
-// bound is finite, the softplus' unit length takes the place of the range.
+// the sigmoid the gradient vanishes and the solver could not leave the bound again. With only one
+// finite bound, the unit length of the softplus takes the place of the range.
 constexpr double kStartMargin = 0.02;
 
 double sigma(double theta) { return 1.0 / (1.0 + std::exp(-theta)); }
@@ -55,7 +55,7 @@ double slope(InputBounding bounding, double theta, double lower, double upper) {
   const bool above = std::isfinite(upper);
   if (below && above) {
     const double share = share_of(bounding, theta);
-    // d tanh(θ)/2 = 2 σ(2θ) (1 − σ(2θ)): steeper by two than σ(θ) at the same share.
+    // d tanh(θ)/2 = 2 σ(2θ) (1 − σ(2θ)): twice as steep as σ(θ) at the same share.
     const double steepness = bounding == InputBounding::kTanh ? 2.0 : 1.0;
     return steepness * (upper - lower) * share * (1.0 - share);
   }

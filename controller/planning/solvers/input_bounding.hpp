@@ -1,7 +1,7 @@
-// Changes of variables that let a solver without constraints keep a box: z = z(θ), θ free.
+// Changes of variables that let an unconstrained solver keep a box: z = z(θ), θ free.
 //
-// Where both bounds are finite, z runs through a sigmoid between them; where one is, a softplus
-// leaves it; where none is, z = θ. The penalty leaves z = θ everywhere and penalises the excess.
+// With two finite bounds, z follows a sigmoid between them; with one, a softplus from it; with
+// none, z = θ. The penalty keeps z = θ everywhere and penalises the excess.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ class BoundedInputs {
                  Eigen::Ref<Eigen::VectorXd> gradient) const;
 
   /// Σ (excess / range)², the range being 1 where it is infinite or zero; adds `weight` times its
-  /// gradient. Zero within the bounds, hence everywhere but for the penalty.
+  /// gradient. Zero within the bounds, hence always zero except for the penalty.
   [[nodiscard]] double excess(const Eigen::VectorXd& z, double weight,
                               Eigen::Ref<Eigen::VectorXd> gradient) const;
 

@@ -8,7 +8,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// An excess of a tenth of the range costs as much as the start does, of a hundredth 1 % of it.
+// An excess of a tenth of the range costs as much as the start; one of a hundredth costs 1 % of it.
 constexpr double kPenaltyWeight = 100.0;
 
 bool within(const Eigen::VectorXd& z, const OcpProblem& problem) {
@@ -31,7 +31,7 @@ void LbfgsSolver::run(const OcpProblem& problem, const SolverOptions& options, M
                       Trial& trial) {
   const BoundedInputs bounded(bounding_, problem.lower, problem.upper);
   const bool penalised = bounding_ == InputBounding::kPenalty;
-  // The last evaluation is kept for the cost of the clamped result.
+  // The last evaluation is reserved for the cost of the clamped result.
   const int limit = std::max(1, options.max_evaluations - (penalised ? 1 : 0));
   bool exhausted = false;
   double weight = 0.0;

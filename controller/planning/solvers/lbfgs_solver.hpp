@@ -1,5 +1,4 @@
-// NLopt's limited-memory BFGS, which knows no bounds: they are kept by a change of variables, or by
-// a penalty.
+// NLopt's limited-memory BFGS, used without bounds: a change of variables or a penalty keeps them.
 #pragma once
 
 #include <limits>
@@ -18,7 +17,7 @@ class LbfgsSolver final : public OcpSolver {
                                const SolverOptions& options) override;
 
  private:
-  // The point where cost and penalty together are least, which may lie beyond the bounds.
+  // The point of least cost plus penalty, which may lie beyond the bounds.
   struct Trial {
     Eigen::VectorXd z;
     double value = std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
-// The cost as a solver meets it: counted, within the limits, and checked for finite numbers.
+// The cost function for a solver: counts evaluations, enforces the limits, and checks for
+// non-finite values.
 #pragma once
 
 #include <chrono>
@@ -13,12 +14,12 @@ namespace qsmpc::controller {
 
 class MeteredCost {
  public:
-  /// Refers to both.
+  /// Keeps references to both.
   MeteredCost(const OcpProblem& problem, const SolverOptions& options)
       : problem_(problem), options_(options) {}
 
-  /// Value and gradient at `z`. False, and every time from then on, if the evaluations are used up,
-  /// the time is, or the answer is not finite; `stopped` says which. Allocates nothing.
+  /// Value and gradient at `z`. Returns false, then and ever after, if the evaluations or the time
+  /// are used up, or the result is not finite; `stopped` says which. Allocates nothing.
   bool evaluate(const Eigen::VectorXd& z, double& value, Eigen::VectorXd& gradient) {
     if (!stopped_ && evaluations_ >= options_.max_evaluations) {
       stopped_ = SolverStatus::kIterationLimit;
@@ -36,7 +37,7 @@ class MeteredCost {
 
  private:
   [[nodiscard]] bool late() const {
-    // Without a deadline the clock is left alone.
+    // Without a deadline the clock is not read.
     return options_.deadline != std::chrono::steady_clock::time_point::max() &&
            std::chrono::steady_clock::now() >= options_.deadline;
   }

@@ -15,8 +15,8 @@ namespace {
 // Pairs of steps and gradient changes that L-BFGS remembers.
 constexpr unsigned kVectorStorage = 20;
 
-/// What the callbacks work on. NLopt is C: no exception may pass through it, so one is kept and
-/// thrown again afterwards.
+/// State of the callbacks. NLopt is C, and no exception may pass through it, so one is stored and
+/// rethrown afterwards.
 struct Context {
   const NloptRun& run;
   nlopt_opt handle = nullptr;
@@ -34,7 +34,7 @@ void stop(Context& context) {
   nlopt_force_stop(context.handle);
 }
 
-// SLSQP's subproblem may give NaN where gradients of constraints are all but dependent.
+// SLSQP's subproblem may give NaN if constraint gradients are nearly dependent.
 bool take(Context& context, const double* x, unsigned n) {
   context.x = Eigen::Map<const Eigen::VectorXd>(x, n);
   context.lost = !context.x.allFinite();
@@ -78,7 +78,7 @@ void constraints(unsigned m, double* values, unsigned n, const double* x, double
     context.gradients.setZero();
   }
   std::copy_n(context.values.data(), m, values);
-  // NLopt's layout, m rows of n, is that of n x m in columns.
+  // NLopt's layout, m x n row-major, is n x m column-major.
   if (gradients != nullptr) std::copy_n(context.gradients.data(), m * n, gradients);
 }
 

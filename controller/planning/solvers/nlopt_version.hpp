@@ -4,7 +4,7 @@
 
 namespace qsmpc::controller {
 
-/// Of the NLopt that is linked, e.g. "2.7.1".
+/// Version of the linked NLopt, e.g. "2.7.1".
 [[nodiscard]] std::string nlopt_version();
 
 }  // namespace qsmpc::controller

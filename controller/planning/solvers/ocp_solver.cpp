@@ -93,7 +93,7 @@ void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,
   check(start.size() >= 1, "there is nothing to decide");
   check(problem.lower.size() == start.size() && problem.upper.size() == start.size(),
         "bounds and start must be of one size");
-  // A comparison with NaN is false, so these are refused as well.
+  // Comparisons with NaN are false, so NaN is rejected as well.
   check((problem.lower.array() <= problem.upper.array()).all(), "the bounds are crossed");
   check(options.max_evaluations >= 1, "at least one evaluation of the cost is needed");
   if (!problem.constraints) return;

@@ -4,8 +4,8 @@
 //   const std::unique_ptr<OcpSolver> solver = make_solver("lbfgs", {.bounding = "bounded"});
 //   const SolverResult& result = solver->minimise(problem, start, {.max_evaluations = 50});
 //
-// A solver owns its scratch and, where it is of the quasi-Newton kind, remembers the curvature of
-// the last problem for the next: `forget` and `shift` say what has become of it.
+// A solver owns its scratch. Quasi-Newton solvers keep the curvature of the last problem for the
+// next; `forget` discards and `shift` moves it.
 #pragma once
 
 #include <chrono>
@@ -25,19 +25,20 @@ namespace qsmpc::controller {
 /// Value at `z` (n); overwrites the gradient, which comes with n entries.
 using CostFunction = std::function<double(const Eigen::VectorXd& z, Eigen::VectorXd& gradient)>;
 
-/// Inequality constraints c_j(z) ≤ 0, possibly far more than a solver could take at once (Eq. 4-8:
-/// each particle at each stage against each face). A solver asks for all values, and for the
-/// gradients of the few that matter.
+/// Inequality constraints c_j(z) ≤ 0, possibly far more than a solver could handle at once (Eq.
+/// 4-8: each particle at each stage against each face). A solver asks for all values, but only for
+/// the gradients of the few that matter.
 struct ConstraintSet {
   Eigen::Index count = 0;
   /// All of them; `values` comes with `count` entries.
   std::function<void(const Eigen::VectorXd& z, Eigen::VectorXd& values)> values;
-  /// Those named: `values` comes with which.size() entries, `gradients` as n x which.size().
+  /// Only those in `which`: `values` comes with which.size() entries, `gradients` as n x
+  /// which.size().
   std::function<void(const Eigen::VectorXd& z, const std::vector<int>& which,
                      Eigen::VectorXd& values, Eigen::MatrixXd& gradients)>
       some;
-  /// `count` numbers ≥ 0, or empty: constraints of one group are alike (one face at one stage), so
-  /// that of those that are violated the worst is looked at first. Empty: each is its own group.
+  /// `count` numbers ≥ 0, or empty: constraints of one group are similar (one face at one stage),
+  /// and the worst violated one is considered first. Empty: each is its own group.
   std::vector<int> group;
 };
 
@@ -50,10 +51,10 @@ struct OcpProblem {
 
 struct SolverOptions {
   int max_evaluations = 100;         ///< of cost and gradient, ≥ 1
-  double relative_tolerance = 1e-8;  ///< stop when the cost falls by less, relatively
-  /// No evaluation begins later.
+  double relative_tolerance = 1e-8;  ///< stop when the relative decrease is smaller
+  /// No evaluation starts after it.
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
-  double constraint_tolerance = 1e-6;  ///< a constraint up to here counts as kept
+  double constraint_tolerance = 1e-6;  ///< a constraint counts as kept up to this value
 };
 
 struct SolverResult {
@@ -64,8 +65,8 @@ struct SolverResult {
   double violation = 0.0;  ///< largest max(c_j(z), 0); zero without constraints
 };
 
-/// How a decision vector is made up of stages: inputs_per_stage · horizon entries stage by stage,
-/// and possibly others behind them, which belong to no stage.
+/// The layout of a decision vector: inputs_per_stage · horizon entries stage by stage, possibly
+/// followed by others that belong to no stage.
 struct StageLayout {
   Eigen::Index inputs_per_stage = 1;
   Eigen::Index horizon = 1;
@@ -75,15 +76,15 @@ class OcpSolver {
  public:
   virtual ~OcpSolver() = default;
   /// Minimises from `start` (n), which is moved to the bounds if it lies beyond. The result is
-  /// valid until the next call. Throws std::invalid_argument on sizes that do not fit, on bounds
-  /// that are crossed or not numbers, and on constraints given to a solver that takes none; what
-  /// the problem's functions throw passes through; never throws for numerical reasons.
+  /// valid until the next call. Throws std::invalid_argument on mismatched sizes, on bounds that
+  /// are crossed or NaN, and on constraints given to a solver that takes none. Exceptions of the
+  /// problem's functions pass through. Never throws for numerical reasons.
   virtual const SolverResult& minimise(const OcpProblem& problem, const Eigen::VectorXd& start,
                                        const SolverOptions& options) = 0;
   /// The next call is a cold start.
   virtual void forget() {}
-  /// The decision vector moves on by one stage: the inputs of the first drop out, those behind
-  /// move up, and a last stage comes in. What is known of the curvature moves along.
+  /// The decision vector moves on by one stage: the inputs of the first stage drop out, the others
+  /// move up, and a new last stage is added. The curvature estimate is shifted with them.
   virtual void shift(const StageLayout& /*layout*/) {}
 };
 
@@ -91,13 +92,13 @@ struct SolverSettings {
   std::string bounding = "bounded";  ///< a name of `input_boundings`
 };
 
-/// One solver; a new one is a file with a class, and a line in the table.
+/// One solver. A new one is a file with a class, and a line in the table.
 struct SolverEntry {
   std::string name;
   std::string summary;
   std::unique_ptr<OcpSolver> (*make)(const SolverSettings& settings) = nullptr;
-  bool takes_constraints = false;  ///< whether it can be given inequality constraints
-  bool chooses_bounding = false;   ///< whether `SolverSettings::bounding` says how it keeps bounds
+  bool takes_constraints = false;  ///< whether it supports inequality constraints
+  bool chooses_bounding = false;   ///< whether `SolverSettings::bounding` applies
 };
 
 /// The table of solvers.
@@ -111,7 +112,7 @@ struct InputBoundingEntry {
   std::string summary;
 };
 
-/// The table of ways to keep the bounds, for solvers that let this be chosen.
+/// The table of ways to keep the bounds, for solvers with that choice.
 [[nodiscard]] const std::vector<InputBoundingEntry>& input_boundings();
 
 /// Throws std::invalid_argument on an unknown name.
@@ -120,7 +121,8 @@ struct InputBoundingEntry {
 
 enum class ConstraintsTaken { kNone, kInequalities };
 
-/// What every solver checks first; throws std::invalid_argument as `OcpSolver::minimise` says.
+/// The checks that every solver makes first; throws std::invalid_argument as for
+/// `OcpSolver::minimise`.
 void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,
                    const SolverOptions& options, ConstraintsTaken taken);
 

@@ -9,23 +9,23 @@ namespace {
 
 // Without curvature, the largest entry of the first step is this fraction of its bounds' range.
 constexpr double kFirstMove = 0.2;
-// Fraction of the decrease promised by the slope that a step must bring (Armijo).
+// Fraction of the decrease predicted by the slope that a step must achieve (Armijo).
 constexpr double kSufficient = 1e-4;
-// Where in the tried step the next trial may lie.
+// Limits of the next trial, as fractions of the step last tried.
 constexpr double kShortest = 0.1;
 constexpr double kLongest = 0.5;
 constexpr int kMostTrials = 12;
-// Trials after which curvature of an earlier problem is given up.
+// Trials after which curvature from an earlier problem is discarded.
 constexpr int kInheritedTrials = 2;
-// Powell's damping: the least curvature along a step, relative to what was believed.
+// Powell's damping: the least curvature along a step, relative to the model's.
 constexpr double kLeastCurvature = 0.2;
-// A step fits the model if at most this part of the slope along it is left at its end.
+// A step fits the model if at most this fraction of the slope along it remains at its end.
 constexpr double kSlopeLeft = 0.5;
-// Small decreases in a row that end the search although the gradient is large, as at a kink.
+// Consecutive small decreases that end the search although the gradient is large, as at a kink.
 constexpr int kSmallDecreases = 3;
 
 /// Minimiser of the cubic with values 0 and `value` and slopes `slope` and `end_slope` at 0 and
-/// `length`, or the middle if it has none in the allowed part.
+/// `length`, or the middle if it has none in the allowed range.
 double interpolated(double length, double slope, double value, double end_slope) {
   // Nocedal and Wright, Eq. 3.59.
   const double d1 = slope + end_slope - 3.0 * value / length;
@@ -60,14 +60,15 @@ void ProjectedBfgsSolver::shift(const StageLayout& layout) {
     forget();
     return;
   }
-  // Entry i of the new vector is entry `before(i)` of the old; read ahead of where is written.
+  // Entry i of the new vector is entry `before(i)` of the old one; reads stay ahead of writes.
   const Eigen::Index kept = staged - leading;
   const auto before = [&](Eigen::Index i) { return i < kept ? i + leading : i; };
   for (Eigen::Index j = 0; j < n; ++j) {
     for (Eigen::Index i = 0; i < n; ++i) hessian_(i, j) = hessian_(before(i), before(j));
   }
-  // The last stage keeps its own curvature, and what it shares with others is unknown. Made of a
-  // principal block and this one, the matrix stays positive definite.
+  // The last stage keeps its own curvature; its coupling with other entries is unknown and set to
+  // zero. Block-diagonal with principal blocks of the old matrix, the new one stays positive
+  // definite.
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = kept; j < staged; ++j) {
       if (i >= kept && i < staged) continue;
@@ -79,7 +80,7 @@ void ProjectedBfgsSolver::shift(const StageLayout& layout) {
 
 void ProjectedBfgsSolver::reset_curvature(const OcpProblem& problem) {
   known_ = Curvature::kInitial;
-  double steepest = 0.0;  // entry of the scaled gradient that the bounds do not stop
+  double steepest = 0.0;  // largest entry of the scaled gradient that no bound blocks
   for (Eigen::Index i = 0; i < z_.size(); ++i) {
     const bool held = gradient_[i] > 0.0 ? z_[i] <= problem.lower[i] : z_[i] >= problem.upper[i];
     if (!held) steepest = std::max(steepest, std::abs(gradient_[i] * scale_[i]));
@@ -89,7 +90,7 @@ void ProjectedBfgsSolver::reset_curvature(const OcpProblem& problem) {
   hessian_.diagonal() = curvature * scale_.array().square().inverse();
 }
 
-// What the slope promises if each entry goes as far as the bounds, or else its scale, allow.
+// First-order decrease if each entry moves as far as its bound or scale allows.
 double ProjectedBfgsSolver::attainable(const OcpProblem& problem) const {
   double sum = 0.0;
   for (Eigen::Index i = 0; i < z_.size(); ++i) {
@@ -107,7 +108,7 @@ bool ProjectedBfgsSolver::find_step(const OcpProblem& problem) {
   return model_.solve(hessian_, gradient_, below_, above_, step_);
 }
 
-// Shortens the step until the cost falls enough; the whole step is within the bounds.
+// Backtracks until the cost falls enough; the full step is within the bounds.
 ProjectedBfgsSolver::Search ProjectedBfgsSolver::search(const OcpProblem& problem,
                                                         const SolverOptions& options,
                                                         MeteredCost& cost) {
@@ -140,8 +141,8 @@ ProjectedBfgsSolver::Search ProjectedBfgsSolver::search(const OcpProblem& proble
 void ProjectedBfgsSolver::learn() {
   double product = moved_.dot(change_);
   if (known_ == Curvature::kInitial && product > 0.0) {
-    // The first pair of step and change tells the scale (Nocedal and Wright, Eq. 6.20, for B and in
-    // the metric of the ranges).
+    // The first pair of step and gradient change sets the scale (Nocedal and Wright, Eq. 6.20, for
+    // B and in the metric of the ranges).
     const double curvature = change_.cwiseProduct(scale_).squaredNorm() / product;
     hessian_.diagonal() = curvature * scale_.array().square().inverse();
   }
@@ -149,8 +150,8 @@ void ProjectedBfgsSolver::learn() {
   double believed = moved_.dot(curved_);
   if (!(believed > 0.0)) return;
   if (known_ == Curvature::kInherited && product > 0.0 && product < kLeastCurvature * believed) {
-    // What was inherited is far too stiff, as after a cost a thousand times larger: all of it is
-    // scaled (Oren and Luenberger 1974).
+    // The inherited curvature is far too large, as after a cost a thousand times larger: scale all
+    // of it (Oren and Luenberger 1974).
     hessian_ *= product / believed;
     curved_ *= product / believed;
     believed = product;
@@ -179,8 +180,8 @@ SolverStatus ProjectedBfgsSolver::run(const OcpProblem& problem, const SolverOpt
     const double within_reach = attainable(problem);
     if (within_reach == 0.0) return SolverStatus::kConverged;
     if (!find_step(problem)) return SolverStatus::kNumericalTrouble;
-    // A small decrease alone says little: the slope must be small too, or else the model, which has
-    // just proved right, must promise no more.
+    // A small decrease alone is not convergence: either the slope must be small as well, or the
+    // model, just found accurate, must predict no larger decrease.
     small_decreases = decrease <= small ? small_decreases + 1 : 0;
     const bool flat = within_reach <= slope_small || (fitting_ && -model_.value() <= small);
     if (small_decreases > 0 && flat) return SolverStatus::kConverged;

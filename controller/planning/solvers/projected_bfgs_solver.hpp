@@ -1,6 +1,6 @@
-// A dense quasi-Newton method that keeps the bounds themselves: its steps minimise the quadratic
-// model over the box. It allocates nothing once it has met a problem of the size, and remembers the
-// curvature from call to call.
+// A dense quasi-Newton method that handles the bounds directly: its steps minimise the quadratic
+// model over the box. It allocates only when the size of the problem changes, and keeps the
+// curvature between calls.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +21,8 @@ class ProjectedBfgsSolver final : public OcpSolver {
  private:
   enum class Curvature {
     kNone,       ///< as after `forget`
-    kInherited,  ///< of an earlier problem, and not tried on this one
-    kInitial,    ///< a guess by the bounds' ranges, not yet scaled
+    kInherited,  ///< from an earlier problem, not yet tried on this one
+    kInitial,    ///< a guess from the bounds' ranges, not yet scaled
     kLearnt,
   };
   enum class Search { kDescended, kFailed, kStopped };
@@ -38,7 +38,7 @@ class ProjectedBfgsSolver final : public OcpSolver {
 
   Curvature known_ = Curvature::kNone;
   SolverResult result_;
-  bool fitting_ = false;  // the last step was whole, and the model right about where it ends
+  bool fitting_ = false;  // the last step was a full step, and the model right about its end
   BoxQp model_;
   Eigen::MatrixXd hessian_;   // B
   Eigen::VectorXd scale_;     // of the entries: the bounds' ranges

@@ -8,20 +8,20 @@
 namespace qsmpc::controller {
 namespace {
 
-// Constraints that enter the working set at once, and that it holds before some are dropped, both
-// per decision: at a vertex as many are active as there are decisions.
+// Numbers of constraints that enter the working set at once, and that it may hold before some are
+// dropped, both per decision: at a vertex, as many are active as there are decisions.
 constexpr std::size_t kEnterPerDecision = 1;
 constexpr std::size_t kHeldPerDecision = 3;
-// NLopt begins with a Hessian of one. Decisions are scaled by the ranges of their bounds, and the
-// cost so that its first step is of this fraction of them.
+// NLopt starts with an identity Hessian. Decisions are scaled by the ranges of their bounds, and
+// the cost so that the first step is this fraction of them.
 constexpr double kSlsqpFirstMove = 0.2;
-// Times that a stalled run is begun again with half of its working set.
+// How often a stalled run is restarted with half of its working set.
 constexpr int kMostThinnings = 6;
-// Runs that end without anything new to work on, because NLopt stopped short of feasibility: they
-// are begun again as long as each lowers the violation by this factor.
+// If NLopt stops short of feasibility without any new constraint, it is restarted as long as each
+// run lowers the violation by this factor.
 constexpr double kProgress = 0.5;
 
-/// Kept constraints come before violated ones, then what costs less, or violates less.
+/// Feasible before infeasible, then lower cost or, if both are infeasible, lower violation.
 bool better(double value, double violation, double than_value, double than_violation,
             double tolerance) {
   const bool kept = violation <= tolerance;
@@ -60,7 +60,7 @@ bool SlsqpSolver::assess(const OcpProblem& problem, const Eigen::VectorXd& z, Me
   return true;
 }
 
-// From `reached_`, on the working set, to a new `reached_`.
+// One run on the working set, from `reached_` to a new `reached_`.
 NloptEnd SlsqpSolver::run(const OcpProblem& problem, const SolverOptions& options,
                           MeteredCost& cost) {
   const auto size = static_cast<Eigen::Index>(working_.size());
@@ -98,7 +98,7 @@ NloptEnd SlsqpSolver::run(const OcpProblem& problem, const SolverOptions& option
   return run_nlopt(nlopt, start);
 }
 
-// All constraints at `point`, whose violation is set; false if one is not finite.
+// Evaluates all constraints at `point`, and sets its violation; false if one is not finite.
 bool SlsqpSolver::check_all(const OcpProblem& problem, Point& point) {
   point.violation = 0.0;
   if (all_.size() > 0) {
@@ -115,7 +115,7 @@ bool SlsqpSolver::check_all(const OcpProblem& problem, Point& point) {
   return true;
 }
 
-// Takes in the worst constraint of each group that exceeds the threshold, the worst groups first.
+// Adds the worst new constraint of each group above the threshold, the worst groups first.
 std::size_t SlsqpSolver::enlarge(const OcpProblem& problem, double threshold) {
   const std::vector<int>& group = problem.constraints->group;
   const auto group_of = [&](int j) { return group.empty() ? j : group[j]; };
@@ -138,8 +138,8 @@ std::size_t SlsqpSolver::enlarge(const OcpProblem& problem, double threshold) {
   return entered;
 }
 
-// Where the working set has grown large, the constraints with most room are dropped. Those come
-// back that are violated then.
+// Drops the constraints with most slack from a large working set. Any that are then violated will
+// be added again.
 void SlsqpSolver::drop_inactive() {
   const std::size_t most = kHeldPerDecision * static_cast<std::size_t>(best_.z.size());
   if (working_.size() <= most) return;
@@ -147,8 +147,8 @@ void SlsqpSolver::drop_inactive() {
   while (working_.size() > most && all_[working_.back()] < -tolerance_) working_.pop_back();
 }
 
-// The start, and the constraints nearest to it, however far: a constraint that does not matter only
-// makes NLopt's own steps a little slower.
+// Evaluates the start, and adds the constraints nearest to it, however far away: one that does not
+// matter only makes NLopt's steps a little slower.
 bool SlsqpSolver::begin(const OcpProblem& problem, MeteredCost& cost) {
   if (!assess(problem, best_.z, cost) || !check_all(problem, reached_)) return false;
   if (all_.size() > 0) enlarge(problem, -std::numeric_limits<double>::infinity());
@@ -160,8 +160,8 @@ SolverStatus SlsqpSolver::stopped_as(const MeteredCost& cost) const {
                   : cost.stopped().value_or(SolverStatus::kStalled);
 }
 
-// Keeps the worse half. NLopt stalls where gradients in the set are all but dependent, and often
-// does not with fewer.
+// Keeps the worse half. NLopt stalls if gradients in the working set are nearly dependent, and
+// often does not with fewer.
 void SlsqpSolver::thin() {
   std::sort(working_.begin(), working_.end(), [&](int a, int b) { return all_[a] > all_[b]; });
   working_.resize(working_.size() / 2);
@@ -207,7 +207,7 @@ const SolverResult& SlsqpSolver::minimise(const OcpProblem& problem, const Eigen
   scale_.resize(start.size());
   for (Eigen::Index i = 0; i < start.size(); ++i) {
     const double range = problem.upper[i] - problem.lower[i];
-    // A power of two, so that scaling rounds nothing and a start is known again as evaluated.
+    // A power of two, so that scaling is exact and an evaluated start is recognised.
     scale_[i] = std::isfinite(range) && range > 0.0 ? std::exp2(std::round(std::log2(range))) : 1.0;
   }
   best_ = {.z = start.cwiseMax(problem.lower).cwiseMin(problem.upper),
@@ -217,7 +217,8 @@ const SolverResult& SlsqpSolver::minimise(const OcpProblem& problem, const Eigen
   reached_ = best_;
   MeteredCost cost(problem, options);
   result_.status = begin(problem, cost) ? rounds(problem, options, cost) : stopped_as(cost);
-  // What was cut short says so; else constraints that are not kept come before the rest.
+  // Numerical trouble and the deadline take precedence; otherwise infeasibility overrides the
+  // status.
   const bool cut = result_.status == SolverStatus::kNumericalTrouble ||
                    result_.status == SolverStatus::kDeadline;
   if (!cut && best_.violation > tolerance_) result_.status = SolverStatus::kInfeasible;

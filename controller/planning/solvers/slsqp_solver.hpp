@@ -1,5 +1,5 @@
-// NLopt's sequential quadratic programming, for problems with many inequality constraints: it works
-// on the few that matter, and on others once they turn out to be violated.
+// NLopt's sequential quadratic programming, for problems with many inequality constraints: it keeps
+// a working set of the few that matter, and adds others once they are violated.
 #pragma once
 
 #include <vector>
@@ -18,18 +18,18 @@ class SlsqpSolver final : public OcpSolver {
                                const SolverOptions& options) override;
 
  private:
-  // A point with its cost and the largest violation of the constraints that were looked at.
+  // A point with its cost and the largest violation of the constraints evaluated there.
   struct Point {
     Eigen::VectorXd z;
     double value = 0.0;
     double violation = 0.0;
     Eigen::VectorXd gradient;
   };
-  // What NLopt was told last, so that asking again costs nothing.
+  // The last answer to NLopt, cached so that asking again costs nothing.
   struct Answer {
     Point point;
     bool evaluated = false;  // whether cost and gradient are known
-    bool complete = false;   // whether the working set is, too
+    bool complete = false;   // whether the working set is known as well
     Eigen::VectorXd constraints;
     Eigen::MatrixXd constraint_gradients;  // n x working set
   };
@@ -45,15 +45,15 @@ class SlsqpSolver final : public OcpSolver {
   SolverStatus rounds(const OcpProblem& problem, const SolverOptions& options, MeteredCost& cost);
 
   SolverResult result_;
-  Point best_;     // of those at which all constraints were looked at
-  Point reached_;  // the best of a run, as far as the working set tells
+  Point best_;     // of the points at which all constraints were evaluated
+  Point reached_;  // the best point of a run, judged by the working set only
   Answer answer_;
   bool trouble_ = false;  // a constraint was not finite
   double tolerance_ = 0.0;
   Eigen::VectorXd scale_;  // of the decisions: the bounds' ranges
   std::vector<int> working_;
   std::vector<int> candidates_;
-  Eigen::VectorXd all_;  // values of all constraints where they were looked at last
+  Eigen::VectorXd all_;  // values of all constraints at the last point where they were evaluated
 };
 
 }  // namespace qsmpc::controller

@@ -6,7 +6,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// Constant inputs that are tried, as shares of the way from the middle of the bounds to their ends.
+// Constant inputs to try, as fractions of the way from the middle of the bounds to their ends.
 constexpr double kShares[] = {-0.9, -0.45, 0.45, 0.9};
 
 }  // namespace

@@ -20,18 +20,19 @@ class FirstGuess {
  public:
   explicit FirstGuess(const PlannerSettings& settings);
 
-  /// Compares them by `cost`, which has been placed at the belief. previous: the inputs of the
-  /// previous plan, or null. Returns whether these are there and have a finite cost. Allocates only
-  /// in the first call.
+  /// Compares the candidates by `cost`, which has been placed at the belief. previous: the inputs
+  /// of the previous plan, or null. Returns whether they exist and have a finite cost. Allocates
+  /// only in the first call.
   [[nodiscard]] bool compare(const Eigen::MatrixXd* previous, const Eigen::MatrixXd& gain_change,
                              NoiseFreeCost& cost, PolicyMaker& policies);
 
-  /// The previous inputs one stage later, and the cheapest of the constants; input_dim x horizon.
+  /// The previous inputs shifted by one stage, and the cheapest constant inputs; input_dim x
+  /// horizon.
   [[nodiscard]] const Eigen::MatrixXd& shifted() const { return shifted_; }
   [[nodiscard]] const Eigen::MatrixXd& constant() const { return constants_[constant_]; }
-  /// The constant in the middle of the bounds.
+  /// The constant inputs in the middle of the bounds.
   [[nodiscard]] const Eigen::MatrixXd& middle() const { return constants_.front(); }
-  /// How much less than the shifted previous inputs the constant ones cost, without noise.
+  /// By how much the constant inputs are cheaper than the shifted previous ones, without noise.
   [[nodiscard]] double advantage() const { return advantage_; }
 
  private:
@@ -41,11 +42,11 @@ class FirstGuess {
   Eigen::MatrixXd shifted_;
 };
 
-/// Whether `cost` is so much less than that of the shifted previous plan that it is worth to leave
-/// that: switching sides of an obstacle for less makes the vehicle waver.
+/// Whether `cost` is so much below `than`, that of the shifted previous plan, that the latter is
+/// worth abandoning: switching sides of an obstacle for less makes the vehicle waver.
 [[nodiscard]] bool clearly_cheaper(double cost, double than);
 
-/// The inputs of a plan, one stage later; the last is held.
+/// Shifts the inputs of a plan by one stage; the last is held.
 void shift_inputs(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& out);
 
 }  // namespace qsmpc::controller

@@ -7,9 +7,9 @@
 
 namespace qsmpc::controller {
 namespace {
-// Shares of the way from the middle of an input's bounds to their ends, for each half.
+// Fractions of the way from the middle of an input's bounds to their ends, for each half.
 constexpr double kStartShares[] = {0.0, -0.9, -0.45, 0.45, 0.9};
-// Groups whose best start descends, and how far.
+// Number of groups whose best start descends, and the limits of a descent.
 constexpr std::size_t kDescents = 6;
 constexpr int kDescentEvaluations = 30;
 constexpr double kDescentTolerance = 1e-5;
@@ -32,7 +32,7 @@ MultiStartSearch::MultiStartSearch(const PlannerSettings& settings, NoiseFreeCos
     for (const double early : kStartShares) {
       if (input > 0 && early == 0.0 && horizon == 1) continue;
       for (const double late : kStartShares) {
-        // All inputs in the middle are a start of the first input's.
+        // The start with all inputs in the middle already belongs to the first input.
         if (input > 0 && early == 0.0 && late == 0.0) continue;
         Eigen::MatrixXd inputs = middle.replicate(1, horizon);
         inputs.row(input).head(first).array() += early * reach[input];
@@ -105,7 +105,7 @@ void MultiStartSearch::descend(PolicyMaker& policies, Start& start) {
       {.max_evaluations = kDescentEvaluations, .relative_tolerance = kDescentTolerance});
   if (!(result.value < start.cost)) return;
   start.inputs = result.z.reshaped(start.inputs.rows(), start.inputs.cols());
-  // With the gains that belong to them.
+  // With the gains for the new inputs.
   start.cost = cost_.evaluate(start.inputs, no_gain_change_, policies);
 }
 

@@ -1,10 +1,10 @@
 // Multi-start search for cold starts among obstacles.
 //
-// The cost has a local minimum for each way round each obstacle, and a descent finds the one of the
-// basin that it starts in. Inputs that are constant over each half of the horizon are evaluated in
-// all combinations; the best of each first half descends a little; distinct local minima become the
-// candidates for a plan's start. The search works without noise: it finds minima, and does not
-// decide which of two similar ones is lower.
+// The cost has a local minimum for each way round each obstacle, and a descent finds the one in
+// whose basin it starts. All combinations of inputs that are constant over each half of the horizon
+// are evaluated; the best for each first half descends a little; distinct local minima become the
+// candidates for a plan's start. The search ignores the noise: it finds minima, but does not decide
+// which of two similar ones is lower.
 #pragma once
 
 #include <chrono>
@@ -34,7 +34,7 @@ class MultiStartSearch {
  private:
   struct Start {
     Eigen::MatrixXd inputs;
-    int group = 0;  // starts of one group differ in the second half alone
+    int group = 0;  // starts of one group differ only in the second half
     double cost = 0.0;
   };
 

@@ -22,8 +22,8 @@ StartChoice::StartChoice(const models::Dynamics& dynamics, const PlannerSettings
   }
 }
 
-/// Where the risk is limited, the noise-free cost counts what exceeds the limits, by the surrogate
-/// of the shifted previous plan or, without one, of constant inputs.
+/// With risk limits, the noise-free cost includes the excess over them, by the surrogate of the
+/// shifted previous plan or, without one, of constant inputs.
 void StartChoice::hold_risk(const Plan* previous, PlanInProgress& plan) {
   RiskConstraint* risk = evaluator_.risk();
   if (risk == nullptr) return;
@@ -78,11 +78,12 @@ void StartChoice::choose(const Gaussian& belief, Plan* previous, PlanInProgress&
   }
 }
 
-/// Whether the best constant inputs are clearly cheaper than the shifted previous plan, which is
-/// the current one, with the noise, too. Where the assignments that are held do not rule it out,
-/// both are predicted. Leaves the assignments for the current plan held.
+/// Whether the best constant inputs are clearly cheaper than the shifted previous plan (the current
+/// one) with noise as well. Both are predicted unless the held assignments rule it out. Leaves the
+/// assignments for the current plan held.
 bool StartChoice::constant_is_clearly_cheaper(const Plan& previous, PlanInProgress& plan) {
-  // Without noise many a constant looks better than a plan that is careful because of it.
+  // Only a necessary condition: without noise, many constant inputs look better than a plan that is
+  // careful because of it.
   if (!(guess_.advantage() > 0.0)) return false;
   Plan& current = *plan.current;
   Plan& constant = *plan.candidate;
@@ -107,7 +108,7 @@ bool StartChoice::constant_is_clearly_cheaper(const Plan& previous, PlanInProgre
   return clearly_cheaper(constant.cost.total(), current.cost.total());
 }
 
-/// Makes the current plan the cheapest, as predicted with noise, of the search's minima and of
+/// Sets the current plan to the cheapest, as predicted with noise, among the search's minima and
 /// itself if it has been evaluated, and freezes its assignments.
 void StartChoice::take_best_minimum(PlanInProgress& plan) {
   bool held = plan.evaluated;

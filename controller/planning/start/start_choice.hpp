@@ -1,5 +1,5 @@
-// Which plan the optimisation starts from: the previous one a stage later, constant inputs, or a
-// minimum that a search over both halves of the horizon finds.
+// Chooses the plan that the optimisation starts from: the previous one shifted by a stage, constant
+// inputs, or a minimum found by a search over both halves of the horizon.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ namespace qsmpc::controller {
 
 class StartChoice {
  public:
-  /// Refers to all three.
+  /// Keeps references to all three.
   StartChoice(const models::Dynamics& dynamics, const PlannerSettings& settings,
               PlanEvaluator& evaluator);
   StartChoice(const StartChoice&) = delete;
@@ -28,10 +28,10 @@ class StartChoice {
   StartChoice& operator=(StartChoice&&) = delete;
   ~StartChoice() = default;
 
-  /// Makes plan.current the start, for the belief that the evaluator has taken, and holds
-  /// assignments that may do for it: those of the previous plan, if that is where the start is
-  /// from, or else new ones. Sets plan.warm to whether it is.
-  /// previous: the plan to go on from, or null; its particles of stage 0 are moved to the belief.
+  /// Sets plan.current to the start, for the evaluator's current belief, and holds suitable
+  /// assignments: those of the previous plan if the start comes from it, or else new ones. Sets
+  /// plan.warm to whether it does. previous: the plan to continue, or null; its particles of stage
+  /// 0 are moved to the belief.
   void choose(const Gaussian& belief, Plan* previous, PlanInProgress& plan);
 
  private:
@@ -43,7 +43,7 @@ class StartChoice {
   Eigen::MatrixXd no_noise_;
   NoiseFreeCost noise_free_;
   FirstGuess guess_;
-  std::optional<MultiStartSearch> minima_;  // where there are obstacles, or limits of the risk
+  std::optional<MultiStartSearch> minima_;  // with obstacles or risk limits
   Eigen::MatrixXd gain_change_;
   Eigen::MatrixXd shifted_;
 };

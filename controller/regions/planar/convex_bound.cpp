@@ -15,9 +15,10 @@
 namespace qsmpc::controller {
 namespace {
 
-// Of a covariance, relative to the product of its variances: below it there is no second direction.
+// Determinant of a covariance relative to the product of its variances: below this there is no
+// second direction.
 constexpr double kRegularShare = 1e-10;
-// Projections whose correlation is less count as independent only if it is rounding.
+// A correlation of projections up to this is rounding; they count as independent.
 constexpr double kNoCorrelation = 1e-12;
 
 Eigen::Vector2d across(const Eigen::Vector2d& direction) { return {-direction.y(), direction.x()}; }
@@ -56,7 +57,7 @@ BoxPart rectangle_about(const ConvexPart& part, const DirectionPair& pair) {
   return rectangle;
 }
 
-/// The surrogate of a disc's centre in two projections.
+/// The surrogate state of a disc's centre in two projections.
 class ProjectedLaw {
  public:
   ProjectedLaw(const SurrogateLaw& state, PlaneAxes axes, const DirectionPair& pair)
@@ -68,7 +69,7 @@ class ProjectedLaw {
       higher_[k] = pair.cwiseAbs() * state.higher[k](axes_);
     }
     smoothing_ = [this](const std::vector<Eigen::Index>& /*axes*/) -> Eigen::MatrixXd {
-      // One projection alone moves with both coordinates.
+      // Even a single projection depends on both coordinates.
       return projected(state_.smoothing(axes_));
     };
   }
@@ -120,8 +121,8 @@ std::vector<DirectionPair> other_pairs(const ConvexPart& part, const Eigen::Vect
   return pairs;
 }
 
-// With gap the distance of the mean from the circle along u: z + e is in the circle only if u·z is
-// at least gap/2 below its mean, or u·e below −gap/2.
+// Let gap be the distance of the mean from the circle along u: z + e is in the circle only if u·z
+// is at least gap/2 below its mean, or u·e is below −gap/2.
 double far_probability(const SurrogateLaw& state, const Circle& circle, PlaneAxes axes,
                        const Eigen::Matrix2d& spread) {
   const Eigen::Vector2d way =
@@ -142,7 +143,7 @@ double far_probability(const SurrogateLaw& state, const Circle& circle, PlaneAxe
   const double beyond =
       half > kTail * deviation ? kTailAllowance : normal_cumulative(-half / deviation);
   const double bound = tail + beyond;
-  return bound < 1.0 ? bound : 1.0;  // what is not a number is no bound
+  return bound < 1.0 ? bound : 1.0;  // NaN is no bound
 }
 
 RegionProbability convex_probability(const SurrogateLaw& state, const ConvexPart& part,
@@ -160,7 +161,7 @@ RegionProbability convex_probability(const SurrogateLaw& state, const ConvexPart
     least.smooth = std::min({least.smooth, bound.smooth, least.markov});
   };
   take(nearest_pair(part, mean));
-  // Others cannot matter.
+  // Other pairs cannot matter.
   if (least.markov <= std::max(state.worthwhile, kNegligiblePart)) return least;
   for (const DirectionPair& pair : other_pairs(part, mean, covariance)) take(pair);
   return least;

@@ -1,5 +1,5 @@
-// What certificates need of convex parts of the plane, as a Gaussian sees them: projections on two
-// directions, in which a part lies in a rectangle (docs/theory/shapes.md).
+// Bounds for certificates of a Gaussian and a convex part of the plane. They project both on two
+// directions, in which the part lies in a rectangle (docs/theory/shapes.md).
 #pragma once
 
 #include <vector>
@@ -13,42 +13,45 @@
 
 namespace qsmpc::controller {
 
-/// The states that are the plane.
+/// Indices of the states that span the plane.
 struct PlaneAxes {
   Eigen::Index x = 0;
   Eigen::Index y = 1;
 };
 
-/// Two directions of length 1, in rows; for a half-plane the first alone is of use.
+/// Two unit directions, as rows; only the first matters for a half-plane.
 using DirectionPair = Eigen::Matrix2d;
 
-/// The direction from the part to the mean, and the one across: the only pair that is needed where
-/// the part is far away.
+/// The direction from the part to the mean and its perpendicular: the only pair needed if the part
+/// is far away.
 [[nodiscard]] DirectionPair nearest_pair(const ConvexPart& part, const Eigen::Vector2d& mean);
 
-/// More pairs in which a rectangle about the part leaves little of the law besides: along the way
-/// that is shortest in deviations, and uncorrelated or across. None for a half-plane.
+/// Further pairs in which the rectangle about the part contains little of the law beyond the part:
+/// the direction from the part to the mean with the uncorrelated one, and the direction of the
+/// least separation in standard deviations with the uncorrelated one or the perpendicular. None for
+/// a half-plane or a singular covariance.
 [[nodiscard]] std::vector<DirectionPair> other_pairs(const ConvexPart& part,
                                                      const Eigen::Vector2d& mean,
                                                      const Eigen::Matrix2d& covariance);
 
-/// What a part may add without being worked out further.
+/// A bound of a part at or below this value is not refined.
 inline constexpr double kNegligiblePart = 1e-8;
 
-/// A bound of P(z + e in the circle), good where that is far away: half of the way to it is left to
-/// z, the other half to e. 1 where the mean is not outside of it. spread: covariance in the plane
-/// that z has besides that of its law.
+/// A bound of P(z + e in the circle), tight if the circle is far away: half of the distance is
+/// allotted to z, the other half to e. 1 unless the mean is outside the circle. spread: covariance
+/// in the plane that z has in addition to that of its law.
 [[nodiscard]] double far_probability(const SurrogateLaw& state, const Circle& circle,
                                      PlaneAxes axes,
                                      const Eigen::Matrix2d& spread = Eigen::Matrix2d::Zero());
 
-/// Bounds C3 and C4 of P(z + e in the part): for each pair those of the rectangle in the
-/// projections (box_part.hpp), whose errors are bounded by the triangle inequality; of all pairs
-/// the least.
+/// Bounds C3 and C4 of P(z + e in the part): the least, over all pairs, of the bounds for the
+/// rectangle in the projections (box_part.hpp), whose errors are bounded by the triangle
+/// inequality.
 [[nodiscard]] RegionProbability convex_probability(const SurrogateLaw& state,
                                                    const ConvexPart& part, PlaneAxes axes);
 
-/// What does not depend on t of a bound of E(1 − d(y, part)²/t²)₊ for y ~ N(mean, covariance).
+/// The part of a bound of E(1 − d(y, part)²/t²)₊, y ~ N(mean, covariance), that does not depend on
+/// t.
 [[nodiscard]] SoftPart soft_convex(const ConvexPart& part, const Eigen::Vector2d& mean,
                                    const Eigen::Matrix2d& covariance);
 

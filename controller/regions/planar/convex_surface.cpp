@@ -11,10 +11,10 @@ namespace qsmpc::controller {
 namespace {
 
 constexpr int kNewtonSteps = 6;
-// What is shorter has no direction.
+// A shorter vector has no direction.
 constexpr double kNoLength = 1e-300;
 
-/// The face that the point is farthest beyond, or inside nearest to; one there must be.
+/// The face that the point is farthest beyond or, inside, nearest to. The part must have a face.
 Eigen::Index farthest_face(const ConvexPart& part, const Eigen::Vector2d& point) {
   Eigen::Index farthest = 0;
   double most = -kInfinity;
@@ -35,8 +35,8 @@ Eigen::Vector2d gap_to_edge(const ConvexPart& part, Eigen::Index i, const Eigen:
   return point - from - share * along;
 }
 
-/// The polygon alone, from outside. Along the edges that can be seen from the point the distance
-/// falls to its least and rises again; `face` is one of them.
+/// The polygon without its radius, from outside. Along the edges visible from the point the
+/// distance falls to a minimum and rises again; `face` is one of these edges.
 SurfacePoint nearest_on_edges(const ConvexPart& part, Eigen::Index face,
                               const Eigen::Vector2d& point) {
   const Eigen::Index count = part.corners.cols();
@@ -47,7 +47,7 @@ SurfacePoint nearest_on_edges(const ConvexPart& part, Eigen::Index face,
     for (Eigen::Index k = 1; k < count; ++k) {
       at = (at + step) % count;
       const Eigen::Vector2d next = gap_to_edge(part, at, point);
-      // Equal where both are nearest in the corner between them.
+      // Equal if both are nearest at their common corner.
       if (next.squaredNorm() > square) break;
       gap = next;
       square = gap.squaredNorm();
@@ -75,8 +75,8 @@ double rise(const Eigen::Vector2d& n, const Eigen::Vector2d& gap, double radius,
   return t.dot(gap) * n.dot(spread) - (n.dot(gap) - radius) * t.dot(spread);
 }
 
-/// The angle of the n of length 1 at which (n·gap − radius)/√(nᵀSn) is greatest, from Newton steps
-/// on its derivative; those that do not raise it are cut short.
+/// The angle of the unit vector n that maximises (n·gap − radius)/√(nᵀSn), by Newton steps on its
+/// derivative; steps that do not raise the value are shortened.
 double best_angle(const Eigen::Vector2d& gap, double radius, const Eigen::Matrix2d& covariance,
                   double angle) {
   const auto direction = [](double at) { return Eigen::Vector2d(std::cos(at), std::sin(at)); };
@@ -147,10 +147,10 @@ double support(const ConvexPart& part, const Eigen::Vector2d& direction) {
   if (part.corners.cols() > 0) {
     return (direction.transpose() * part.corners).maxCoeff() + part.radius * direction.norm();
   }
-  // A half-plane ends in the direction of its normal alone.
+  // A half-plane is bounded only in the direction of its normal.
   const Eigen::Vector2d normal = part.normals.col(0);
   const double along = direction.dot(normal);
-  // Exactly 0 for the normal itself, whose length is 1 but for rounding.
+  // Exactly 0 for the normal itself, whose length is 1 up to rounding.
   const double across = direction.x() * normal.y() - direction.y() * normal.x();
   const bool is_normal = along > 0.0 && across == 0.0;
   return is_normal ? along * (part.offsets[0] + part.radius) : kInfinity;
@@ -182,7 +182,7 @@ PlanarSeparation separation(const ConvexPart& part, const Eigen::Vector2d& mean,
       before = part.normals.col((i + faces - 1) % faces);
       after = part.normals.col(i);
     }
-    // At a corner n turns from one face's normal to the next one's; where the best is not between
+    // At a corner n turns from one face's normal to the next one's; if the maximum is not between
     // them, a face is better.
     if (faces > 0 && (rise(before, gap, part.radius, covariance) < 0.0 ||
                       rise(after, gap, part.radius, covariance) > 0.0)) {
@@ -191,7 +191,7 @@ PlanarSeparation separation(const ConvexPart& part, const Eigen::Vector2d& mean,
     const auto between = [&](const Eigen::Vector2d& n) {
       return faces == 0 || (cross(before, n) >= 0.0 && cross(n, after) >= 0.0);
     };
-    Eigen::Vector2d n = (inverse * gap).normalized();  // the best for a radius of 0
+    Eigen::Vector2d n = (inverse * gap).normalized();  // the maximum for a radius of 0
     if (!between(n)) n = (before + after).normalized();
     if (part.radius > 0.0) {
       const double angle = best_angle(gap, part.radius, covariance, std::atan2(n.y(), n.x()));

@@ -11,21 +11,21 @@ namespace qsmpc::controller {
 
 /// The surface of a part as seen from a point.
 struct SurfacePoint {
-  double distance = 0.0;  ///< less than 0 inside: minus the least distance that leads out
-  Eigen::Vector2d outward = Eigen::Vector2d::UnitX();  ///< ∂distance/∂point, of length 1
+  double distance = 0.0;  ///< negative inside: minus the least distance out
+  Eigen::Vector2d outward = Eigen::Vector2d::UnitX();  ///< ∂distance/∂point, a unit vector
 };
 
 [[nodiscard]] SurfacePoint nearest_surface(const ConvexPart& part, const Eigen::Vector2d& point);
 
-/// Over several parts, of which one must be: the least distance. For a union this is the distance
-/// outside of it, and inside at most the depth.
+/// The least distance over several parts, at least one. For points outside their union this is the
+/// distance to it; inside, its magnitude is at most the depth.
 [[nodiscard]] SurfacePoint nearest_surface(std::span<const ConvexPart> parts,
                                            const Eigen::Vector2d& point);
 
-/// max over the part of direction · p; infinite where it has no end.
+/// Support function: max of direction · p over the part; infinite if that is unbounded.
 [[nodiscard]] double support(const ConvexPart& part, const Eigen::Vector2d& direction);
 
-/// A disc about the part.
+/// A disc that contains a part.
 struct Circle {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   double radius = 0.0;  ///< infinite for a half-plane
@@ -38,8 +38,8 @@ struct PlanarSeparation {
   Eigen::Vector2d slope;  ///< ∂z/∂mean = n / √(nᵀ S n) there
 };
 
-/// `covariance` must be positive definite. Inside, z < 0 is the least number of deviations that
-/// leads out, of the directions that a few Newton steps find.
+/// `covariance` must be positive definite. Inside, z < 0, and −z is the least number of deviations
+/// out of the part among the directions that a few Newton steps find.
 [[nodiscard]] PlanarSeparation separation(const ConvexPart& part, const Eigen::Vector2d& mean,
                                           const Eigen::Matrix2d& covariance);
 

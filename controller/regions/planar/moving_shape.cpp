@@ -13,9 +13,10 @@
 namespace qsmpc::controller {
 namespace {
 
-// What is less probable has no place among those that distances are taken to.
+// Less probable places are ignored for distances.
 constexpr double kImprobable = 1e-3;
-// Beyond so many standard deviations a tail is below 10⁻²³, and none: of many that move, most are.
+// Beyond this many standard deviations a tail is below 10⁻²³ and is left out: of many moving
+// obstacles, most are that far away.
 constexpr double kNoMovingTail = 10.0;
 
 /// The largest standard deviation in any direction.
@@ -23,13 +24,13 @@ double largest_deviation(const Eigen::Matrix2d& covariance) {
   return std::sqrt(std::max(0.0, largest_variance(covariance)));
 }
 
-/// The places of one stage as Gaussians about many centres see them.
+/// The places of one stage, prepared for Gaussians about many centres.
 class SoftPlaces final : public SoftRegion {
  public:
-  /// Refers to the centres.
+  /// Keeps references to the centres.
   SoftPlaces(PlaneAxes axes, const GaussianCentres& centres, std::size_t count)
       : axes_(axes), centres_(centres) {
-    places_.reserve(count);  // shapes refer to their parts
+    places_.reserve(count);  // shapes keep references to their parts
   }
 
   void take(double weight, std::vector<BoundedPart> parts, const Eigen::Matrix2d& covariance) {
@@ -164,7 +165,7 @@ class MovingShape final : public UnsafeRegion {
 
   [[nodiscard]] std::vector<HalfSpace> half_space_cover(
       Eigen::Index stage, const Eigen::Ref<const Eigen::VectorXd>& towards) const override {
-    // How uncertain places of two stages depend on each other is not known here.
+    // The dependence between uncertain places of two stages is unknown here.
     const std::span<const ObstaclePlace> places = forecast_->at(index_, stage);
     if (places.size() != 1 || !places[0].covariance.isZero(0.0)) return {};
     return parts_.half_space_cover(towards, axes_, motion(places[0]));
@@ -178,7 +179,7 @@ class MovingShape final : public UnsafeRegion {
   }
 
  private:
-  /// The shape at one of its places, grown by what is kept of its uncertainty.
+  /// The shape at one of its places, grown by kKeptDeviations.
   class Grown {
    public:
     Grown(const MovingShape& shape, const ObstaclePlace& place)
@@ -209,7 +210,7 @@ class MovingShape final : public UnsafeRegion {
   PlaneAxes axes_;
   ShapeParts parts_;
   Eigen::Vector2d centre_;
-  Eigen::Matrix2Xd outline_;  ///< of the shape itself, as it is written
+  Eigen::Matrix2Xd outline_;  ///< of the shape itself, as specified
   std::shared_ptr<const ObstacleForecast> forecast_;
   std::size_t index_;
 };

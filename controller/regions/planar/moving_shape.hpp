@@ -1,4 +1,4 @@
-// The region of a shape of the plane of position that moves as a forecast says.
+// The region of a planar shape that moves according to a forecast.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,15 @@
 
 namespace qsmpc::controller {
 
-/// Standard deviations of its place by which an obstacle is grown where a distance is asked for, or
-/// a penalty. Those are for planning; bounds and tails take the whole law.
+/// Standard deviations of its place by which an obstacle is grown for distances and penalties.
+/// These serve planning; bounds and tails use the whole law.
 inline constexpr double kKeptDeviations = 2.0;
 
-/// The shape with all that is nearer to it than growth.radius, in the plane of growth.x and
-/// growth.y, which both must be states, moved as `forecast` has obstacle `index` at the time of
-/// asking. Distances and faces are those of the nearest of its places that are not improbable, each
-/// grown by kKeptDeviations; of penalties the expectation over them is taken. `shape` must be one
-/// that check_planar_shape takes.
+/// The shape and all points nearer to it than growth.radius, in the plane of the states growth.x
+/// and growth.y (neither may be -1), moved as `forecast` predicts obstacle `index` at the time of
+/// the query. Its places are grown by kKeptDeviations for distances, faces and penalties. Distances
+/// and faces are those of the nearest place that is not improbable; penalties are expectations over
+/// all places. `shape` must pass check_planar_shape.
 [[nodiscard]] RegionPointer make_moving_shape(const PlanarShape& shape, const Growth& growth,
                                               std::shared_ptr<const ObstacleForecast> forecast,
                                               std::size_t index);

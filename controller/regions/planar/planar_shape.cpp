@@ -42,7 +42,7 @@ struct ShapeCheck {
   }
 };
 
-/// Corners of a regular polygon of `count` sides about the unit circle, which touches them.
+/// Corners of a regular polygon of `count` sides that circumscribes the unit circle.
 Eigen::Matrix2Xd about_circle(int count) {
   const double reach = 1.0 / std::cos(std::numbers::pi / count);
   Eigen::Matrix2Xd corners(2, count);

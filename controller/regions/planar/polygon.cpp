@@ -9,14 +9,15 @@
 namespace qsmpc::controller {
 namespace {
 
-// Of the square of a polygon's size: what is less is rounding, or a polygon that nobody meant.
+// Threshold of twice the area, relative to the square of a polygon's size: less is rounding or an
+// unintended polygon.
 constexpr double kLeastArea = 1e-9;
 
 using Corner = Eigen::Vector2d;
-/// Numbers of corners, counterclockwise.
+/// Indices of corners, counterclockwise.
 using Loop = std::vector<Eigen::Index>;
 
-/// Twice the area of the triangle; above 0 where it turns left.
+/// Twice the area of the triangle; positive if it turns left.
 double turn(const Corner& a, const Corner& b, const Corner& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
@@ -56,12 +57,12 @@ bool edges_meet(const Eigen::Matrix2Xd& corners, Eigen::Index i, Eigen::Index j)
   const Corner b = corners.col((i + 1) % count);
   const Corner c = corners.col(j);
   const Corner d = corners.col((j + 1) % count);
-  if (j == i + 1) return turn(a, b, d) == 0.0 && (b - a).dot(d - b) < 0.0;  // back along itself
+  if (j == i + 1) return turn(a, b, d) == 0.0 && (b - a).dot(d - b) < 0.0;  // folds back on itself
   if ((j + 1) % count == i) return turn(c, a, b) == 0.0 && (a - c).dot(b - a) < 0.0;
   return meet(a, b, c, d);
 }
 
-/// Whether all corners are on one line, triangles of at most twice this area aside.
+/// Whether all corners are on one line, up to triangles of twice the area `area`.
 bool is_flat(const Eigen::Matrix2Xd& corners, double area) {
   Eigen::Index far = 0;
   (corners.colwise() - corners.col(0)).colwise().squaredNorm().maxCoeff(&far);
@@ -77,7 +78,7 @@ bool in_triangle(const Corner& point, const std::array<Corner, 3>& triangle) {
          turn(triangle[2], triangle[0], point) >= 0.0;
 }
 
-/// Whether the corner `at` of what is left of the polygon can be cut off.
+/// Whether the corner `at` of the rest of the polygon can be cut off.
 bool is_ear(const Eigen::Matrix2Xd& corners, const Loop& left, std::size_t at) {
   const std::size_t count = left.size();
   const std::array<Eigen::Index, 3> ear = {left[(at + count - 1) % count], left[at],
@@ -100,7 +101,7 @@ std::vector<Loop> triangles_of(const Eigen::Matrix2Xd& corners) {
   while (left.size() > 3 && tried < left.size()) {
     const std::size_t count = left.size();
     at %= count;
-    // A corner that goes straight on has no ear, and nothing to cut off.
+    // A corner without a turn has no ear to cut off; it is only removed.
     const Corner here = corners.col(left[at]);
     const bool straight = turn(corners.col(left[(at + count - 1) % count]), here,
                                corners.col(left[(at + 1) % count])) == 0.0;
@@ -173,7 +174,7 @@ std::string why_no_polygon(const Eigen::Matrix2Xd& corners) {
   if (area <= kLeastArea * size) return "an area above 0";
   double of_pieces = 0.0;
   for (const Eigen::Matrix2Xd& piece : convex_pieces(corners)) of_pieces += twice_area(piece);
-  // So near to meeting itself that rounding decides.
+  // The polygon is so close to meeting itself that rounding decides.
   if (std::abs(of_pieces - area) > kLeastArea * size) return "edges that are farther apart";
   return "";
 }
@@ -213,7 +214,7 @@ ConvexPart convex_hull(const Eigen::Matrix2Xd& points) {
   };
   std::sort(sorted.begin(), sorted.end(), before);
   std::vector<Corner> chain;
-  // The lower side from left to right, then the upper one back.
+  // The lower chain from left to right, then the upper chain back.
   for (const bool upper : {false, true}) {
     const std::size_t start = chain.size();
     for (const Corner& point : sorted) {
@@ -223,7 +224,7 @@ ConvexPart convex_hull(const Eigen::Matrix2Xd& points) {
       }
       chain.push_back(point);
     }
-    chain.pop_back();  // the other side begins with it
+    chain.pop_back();  // the other chain begins with it
     if (!upper) std::reverse(sorted.begin(), sorted.end());
   }
   Eigen::Matrix2Xd corners(2, static_cast<Eigen::Index>(chain.size()));
@@ -248,7 +249,7 @@ std::vector<Eigen::Matrix2Xd> convex_pieces(const Eigen::Matrix2Xd& corners) {
       }
       loops[i] = *both;
       loops.erase(loops.begin() + static_cast<std::ptrdiff_t>(j));
-      j = i + 1;  // what did not fit before may fit now
+      j = i + 1;  // earlier rejections may fit the larger loop
     }
   }
   std::vector<Eigen::Matrix2Xd> pieces;

@@ -16,33 +16,34 @@
 namespace qsmpc::controller {
 namespace {
 
-// So many walls in a row are bounded by their hull, too: walls share ends, at which each counts
-// what the error may do.
+// Up to this many successive walls are also bounded by their hull: walls share ends, at which the
+// error counts for each wall.
 constexpr int kHullPieces = 4;
-// What is so many times less than the largest tail is lost in a double: e to the −37.
+// Difference of squared deviations beyond which a tail is lost next to the largest one in double
+// precision: a factor of e to the −37.
 constexpr double kLostSquare = 2.0 * 37.0;
 
 class RoadRegion;
 
-/// A Gaussian of the plane about a centre.
+/// A Gaussian in the plane about a centre.
 struct PlaneLaw {
   Eigen::Matrix2d covariance;
-  double deviation;  ///< in no direction is there a larger one
+  double deviation;  ///< upper bound of that in any direction
 
   explicit PlaneLaw(const Eigen::Matrix2d& plane)
       : covariance(plane), deviation(std::sqrt(std::max(0.0, plane.trace()))) {}
-  /// Whether all that is within t of what is `gap` away is tail.
+  /// Whether everything within t of a set at distance `gap` is in the tail.
   [[nodiscard]] bool is_far(double gap, double t) const { return gap - t > kTail * deviation; }
 };
 
-/// The walls as Gaussians of one covariance about many centres see them.
+/// The walls, prepared for Gaussians of one covariance about many centres.
 class SoftRoad final : public SoftRegion {
  public:
   SoftRoad(const RoadRegion& region, const GaussianCentres& centres);
   void add(double t, Eigen::Index begin, Eigen::Index count, double* totals) const override;
 
  private:
-  /// Walls that are this far from every centre, at least.
+  /// Walls that are at least `gap` away from every centre.
   struct Group {
     int node;
     double gap;
@@ -54,7 +55,7 @@ class SoftRoad final : public SoftRegion {
   const Points& centres_;
   PlaneLaw law_;
   std::vector<Group> groups_;
-  double hopeless_;  // reaches from which on 1 is as good a bound as any
+  double hopeless_;  // from this reach on, 1 is as good a bound as any
 };
 
 class RoadRegion final : public UnsafeRegion {
@@ -106,7 +107,7 @@ class RoadRegion final : public UnsafeRegion {
     const Eigen::Matrix2d covariance =
         uncertain(plane_covariance(law.covariance, axes_), law.covariance.diagonal().maxCoeff());
     const Nearest closest = nearest(mean, kInfinity);
-    if (closest.piece < 0) return;  // a mean that is not a number
+    if (closest.piece < 0) return;  // the mean is NaN
     const double z = separation(pieces_[closest.piece], mean, covariance).z;
     const double most =
         std::min(kNoTail, std::sqrt(std::max(0.0, z) * std::max(0.0, z) + kLostSquare));
@@ -129,7 +130,7 @@ class RoadRegion final : public UnsafeRegion {
     return std::make_unique<const SoftRoad>(*this, centres);
   }
 
-  /// Walls that bend are in no half-space that says anything.
+  /// Empty: no useful half-space contains curved walls.
   [[nodiscard]] std::vector<HalfSpace> half_space_cover(
       Eigen::Index /*stage*/, const Eigen::Ref<const Eigen::VectorXd>& /*towards*/) const override {
     return {};
@@ -145,20 +146,21 @@ class RoadRegion final : public UnsafeRegion {
   [[nodiscard]] const RoadWalls::Node& node(int index) const { return nodes_[index]; }
   [[nodiscard]] const ConvexPart& piece(int index) const { return pieces_[index]; }
 
-  /// A reach t from which on E(1 − d(y, walls)²/t²)₊ is more than ½ for centres within `about`: 1
-  /// is then a bound that says as little as any.
+  /// A reach t from which on E(1 − d(y, walls)²/t²)₊ is more than ½ for centres within `about`, so
+  /// that 1 is as useful a bound as any.
   [[nodiscard]] double hopeless_reach(const Circle& about, const PlaneLaw& law) const {
     constexpr double kTimes = 1.5;
     const double distance = std::max(0.0, nearest(about.centre, kInfinity).surface.distance);
     return kTimes * (distance + about.radius + 2.0 * law.deviation);
   }
 
-  /// At least E(1 − d(y, walls)²/t²)₊ for y of the law about a centre and the walls of a node.
+  /// An upper bound of E(1 − d(y, walls)²/t²)₊ for y of the law about a centre and the walls of a
+  /// node.
   [[nodiscard]] double soft_bound(int index, const Eigen::Vector2d& centre, const PlaneLaw& law,
                                   double t) const {
     const RoadWalls::Node& node = nodes_[index];
     const double gap = (centre - node.circle.centre).norm() - node.circle.radius;
-    // Both what is inside and what is within t of it is tail.
+    // Both the inside and the surrounding within t are in the tail.
     if (law.is_far(gap, t)) return 2.0 * kTailAllowance;
     if (node.is_leaf()) {
       const ConvexPart& piece = pieces_[node.begin];
@@ -203,7 +205,7 @@ class RoadRegion final : public UnsafeRegion {
     return convex_hull(corners);
   }
 
-  /// The surface of the nearest wall of those that are nearer than `enough`; else none.
+  /// The surface of the nearest wall that is nearer than `enough`, if any.
   [[nodiscard]] Nearest nearest(const Eigen::Vector2d& point, double enough) const {
     Nearest least;
     look_into(0, point, enough, least);
@@ -229,8 +231,8 @@ class RoadRegion final : public UnsafeRegion {
     look_into(first_is_nearer ? node.second : node.first, point, enough, least);
   }
 
-  /// Bounds for the walls of a node: all of them together where they are far away, their hull, or
-  /// the sum of each one's.
+  /// Bounds for the walls of a node: jointly if they are far away, otherwise by their hull or as
+  /// the sum over the walls.
   [[nodiscard]] RegionProbability bound_of(int index, const SurrogateLaw& state) const {
     const RoadWalls::Node& node = nodes_[index];
     const double far = far_probability(state, node.circle, axes_);
@@ -248,7 +250,8 @@ class RoadRegion final : public UnsafeRegion {
             .smooth = std::min(together.smooth, one.smooth + other.smooth)};
   }
 
-  /// What bounds a circle that is far away bounds a half-plane as well, in which a part is.
+  /// The bound of a distant circle also holds for a half-plane beside it, and hence for a wall
+  /// inside that.
   [[nodiscard]] RegionProbability piece_bound(const ConvexPart& piece,
                                               const SurrogateLaw& state) const {
     const Eigen::Vector2d mean = plane_point(state.law.mean, axes_);
@@ -275,9 +278,9 @@ class RoadRegion final : public UnsafeRegion {
 
   PlaneAxes axes_;
   std::shared_ptr<const RoadWalls> walls_;
-  std::vector<RoadWalls::Node> nodes_;  // with circles that have grown
-  std::vector<ConvexPart> pieces_;      // the same
-  std::vector<ConvexPart> hulls_;       // of nodes; without corners where there is none
+  std::vector<RoadWalls::Node> nodes_;  // with grown circles
+  std::vector<ConvexPart> pieces_;      // grown as well
+  std::vector<ConvexPart> hulls_;       // of nodes; without corners if there is none
 };
 
 SoftRoad::SoftRoad(const RoadRegion& region, const GaussianCentres& centres)
@@ -291,9 +294,9 @@ SoftRoad::SoftRoad(const RoadRegion& region, const GaussianCentres& centres)
   collect(0, about);
 }
 
-/// `about`: a circle that holds all centres.
+/// `about`: a circle that contains all centres.
 void SoftRoad::collect(int index, const Circle& about) {
-  // Nodes that are so far away, in the lengths at hand, stay together.
+  // Nodes this far away, relative to the size of `about` and the law, are not split.
   constexpr double kApart = 4.0;
   const RoadWalls::Node& node = region_.node(index);
   const double gap = (node.circle.centre - about.centre).norm() - node.circle.radius - about.radius;

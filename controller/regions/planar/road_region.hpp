@@ -1,4 +1,4 @@
-// The region outside of a road.
+// The region outside a road.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace qsmpc::controller {
 
-/// The walls with all that is nearer to them than growth.radius, in the plane of growth.x and
-/// growth.y, which both must be states.
+/// The walls and all points nearer to them than growth.radius, in the plane of the states growth.x
+/// and growth.y (neither may be -1).
 [[nodiscard]] RegionPointer make_road(std::shared_ptr<const RoadWalls> walls, const Growth& growth);
 
 }  // namespace qsmpc::controller

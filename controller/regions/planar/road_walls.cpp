@@ -10,21 +10,22 @@
 namespace qsmpc::controller {
 namespace {
 
-// A wall that another stretch of the road is behind is made thinner by this, again and again.
+// While another stretch of the road is behind a wall, the wall is thinned by this factor,
+// repeatedly.
 constexpr double kThinner = 0.7;
 constexpr int kThinnings = 24;
-// Behind a bend a wall keeps at least this share of the edge's length.
+// Behind a bend the back of a wall keeps at least this fraction of the edge's length.
 constexpr double kLeastBack = 0.1;
-// Walls for several points of an edge: no more than this many, and no more than this turn, rad.
+// A wall for several points of an edge covers at most this many stretches and this turn, rad.
 constexpr int kMostPoints = 64;
 constexpr double kMostTurn = 1.0;
 
-/// A stretch of an edge between two successive points.
+/// The stretch of an edge between two successive points.
 struct Stretch {
   Eigen::Vector2d from;
   Eigen::Vector2d to;
   bool is_left;
-  Eigen::Index number;  ///< on its edge
+  Eigen::Index number;  ///< along its edge
 
   [[nodiscard]] Eigen::Vector2d middle() const { return 0.5 * (from + to); }
   [[nodiscard]] double half_length() const { return 0.5 * (to - from).norm(); }
@@ -59,7 +60,7 @@ bool do_meet(const Stretch& one, const Stretch& other) {
   return sides(a, one.from, other) <= 0.0 && sides(b, other.from, one) <= 0.0;
 }
 
-/// Whether the stretch comes deeper than `depth` into the part's polygon.
+/// Whether the stretch enters the part's polygon deeper than `depth`.
 bool enters(const ConvexPart& part, const Stretch& stretch, double depth) {
   double from = 0.0;
   double to = 1.0;
@@ -123,20 +124,20 @@ class EdgeWalls {
     const Eigen::Index at = i % points_.cols();
     return points_.col(at) + thickness_[at] * away_.col(at);
   }
-  /// The way out of the road across the stretch that begins at point i.
+  /// Unit normal, out of the road, of the stretch that begins at point i.
   [[nodiscard]] Eigen::Vector2d outward(Eigen::Index i) const {
     const Eigen::Vector2d along = (point(i + 1) - point(i)).normalized();
     return is_left_ ? Eigen::Vector2d(-along.y(), along.x())
                     : Eigen::Vector2d(along.y(), -along.x());
   }
-  /// How much the edge turns from its stretch `begin` to the stretch `end`, rad.
+  /// Turn of the edge from its stretch `begin` to its stretch `end`, rad.
   [[nodiscard]] double turn(Eigen::Index begin, Eigen::Index end) const {
     const Eigen::Vector2d first = outward(begin);
     const Eigen::Vector2d last = outward(end);
     return std::abs(std::atan2(cross_product(first, last), first.dot(last)));
   }
 
-  /// What is behind the points begin … end.
+  /// The wall behind the points begin … end.
   [[nodiscard]] ConvexPart wall(Eigen::Index begin, Eigen::Index end) const {
     Eigen::Matrix2Xd corners(2, 2 * (end - begin + 1));
     for (Eigen::Index i = begin; i <= end; ++i) {
@@ -146,7 +147,7 @@ class EdgeWalls {
     return convex_hull(corners);
   }
 
-  /// Whether the road comes into the wall behind begin … end, apart from its own edge.
+  /// Whether the road enters the wall behind begin … end, other than at the wall's own edge.
   [[nodiscard]] bool is_entered(const ConvexPart& piece, Eigen::Index begin,
                                 Eigen::Index end) const {
     const Circle circle = circle_about(piece);
@@ -155,7 +156,7 @@ class EdgeWalls {
       const double reach = circle.radius + stretch.half_length();
       if ((stretch.middle() - circle.centre).squaredNorm() > reach * reach) return false;
       if (stretch.is_left == is_left_) {
-        // Its own stretches, and the one on either side.
+        // The wall's own stretches and their neighbours do not count.
         Eigen::Index after = stretch.number - begin + 1;
         if (closed_) after = (after + count) % count;
         if (after >= 0 && after <= end - begin + 1) return false;
@@ -164,7 +165,7 @@ class EdgeWalls {
     });
   }
 
-  /// Whether one wall may stand for those behind begin … end.
+  /// Whether one wall may replace those behind begin … end.
   [[nodiscard]] bool may_stand(const ConvexPart& piece, Eigen::Index begin,
                                Eigen::Index end) const {
     for (Eigen::Index i = begin + 1; i < end; ++i) {
@@ -173,7 +174,7 @@ class EdgeWalls {
     return !is_entered(piece, begin, end);
   }
 
-  /// Makes walls thinner that would turn back on themselves, or that the road comes into.
+  /// Thins walls that would fold back on themselves or that the road enters.
   void make_room() {
     std::vector<bool> is_good(static_cast<std::size_t>(stretches()), false);
     for (int n = 0; n < kThinnings; ++n) {
@@ -189,7 +190,7 @@ class EdgeWalls {
         const Eigen::Index next = (i + 1) % points_.cols();
         thickness_[i] *= kThinner;
         thickness_[next] *= kThinner;
-        // The neighbours have changed with it.
+        // The neighbours have changed as well.
         const Eigen::Index count = stretches();
         if (closed_ || i > 0) is_good[(i + count - 1) % count] = false;
         if (closed_ || i + 1 < count) is_good[(i + 1) % count] = false;
@@ -203,7 +204,7 @@ class EdgeWalls {
   bool closed_;
   const std::vector<Stretch>& all_;
   Eigen::VectorXd thickness_;  // by point
-  Eigen::Matrix2Xd away_;      // of length 1
+  Eigen::Matrix2Xd away_;      // unit vectors
 };
 
 void check_edges(const RoadEdges& edges) {
@@ -248,7 +249,8 @@ RoadWalls::RoadWalls(RoadEdges edges) : edges_(std::move(edges)) {
   add_node(0, static_cast<int>(pieces_.size()), border);
 }
 
-/// The node of some pieces and those below it. `border`: the first piece of the other edge.
+/// Adds the node of pieces begin … end − 1 and its descendants; returns its index. `border`: the
+/// first piece of the other edge.
 int RoadWalls::add_node(int begin, int end, int border) {
   const int index = static_cast<int>(nodes_.size());
   nodes_.emplace_back();

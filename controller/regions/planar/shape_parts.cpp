@@ -11,8 +11,7 @@
 namespace qsmpc::controller {
 namespace {
 
-// Variances below this share of the largest, or below the square of a nanometre, are taken to be
-// it.
+// Variances below this share of the largest, or below the square of a nanometre, are raised to it.
 constexpr double kCertainShare = 1e-12;
 constexpr double kCertainVariance = 1e-18;
 
@@ -22,8 +21,8 @@ BoundedPart bounded(ConvexPart part, double growth) {
   return {.part = std::move(part), .circle = circle};
 }
 
-/// The state less what is not known of the obstacle's place, which is independent of it: as
-/// certificates see an obstacle that is where it is expected.
+/// The state relative to the obstacle's uncertain place, which is independent of it: certificates
+/// then treat the obstacle as being at its expected place.
 class RelativeLaw {
  public:
   RelativeLaw(const SurrogateLaw& state, PlaneAxes axes, const Eigen::Matrix2d& covariance)
@@ -115,8 +114,8 @@ RegionProbability ShapeParts::sum_of(double worthwhile, const Far& far, const Ne
     total += beyond <= kNegligiblePart ? RegionProbability{.markov = beyond, .smooth = beyond}
                                        : near(one);
   }
-  // Parts share edges, at which each counts what the error may do: all of them at once are better
-  // where they are small.
+  // Parts share edges, at which the error counts for each part: for small parts their hull gives a
+  // better bound.
   if (hull_ && total.smooth > worthwhile) {
     const RegionProbability bound = near(*hull_);
     total.markov = std::min(total.markov, bound.markov);
@@ -133,7 +132,7 @@ RegionProbability ShapeParts::probability(const SurrogateLaw& state, PlaneAxes a
 
 RegionProbability ShapeParts::probability(const SurrogateLaw& state, PlaneAxes axes,
                                           const PlacedAs& where) const {
-  std::optional<RelativeLaw> relative;  // once it is needed
+  std::optional<RelativeLaw> relative;  // made when first needed
   return sum_of(
       state.worthwhile,
       [&](Circle circle) {
@@ -179,7 +178,7 @@ void SoftShape::add(double t, Eigen::Index begin, Eigen::Index count, double* to
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::Vector2d centre(centres_(axes_.x, begin + i), centres_(axes_.y, begin + i));
       const double gap = (centre - one.circle.centre).norm() - one.circle.radius;
-      // Both what is inside and what is within t of it is tail.
+      // Both the inside and the surrounding within t are in the tail.
       totals[i] += gap - t > kTail * deviation_
                        ? 2.0 * kTailAllowance
                        : soft_probability_of(one.part, centre, covariance_, t);
@@ -207,7 +206,7 @@ Outline outline_in(const Eigen::Matrix2Xd& outline, PlaneAxes axes, Eigen::Index
                    Eigen::Index y) {
   if (x == axes.x && y == axes.y) return {.corners = outline};
   if (x == axes.y && y == axes.x) return {.corners = outline.colwise().reverse()};
-  // Of a plane that it is seen in from the side: from where to where.
+  // In a plane with other coordinates only the extent is visible.
   Eigen::Matrix2Xd corners(2, 4);
   const auto side = [&](Eigen::Index axis, bool upper) {
     const int row = axis == axes.x ? 0 : 1;

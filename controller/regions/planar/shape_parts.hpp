@@ -1,5 +1,5 @@
-// What the regions of shapes are made of, whether they stand still or move: the convex parts of a
-// shape, grown, with circles about them that tell quickly that a part is far away.
+// Building blocks of the regions of stationary and moving shapes: the grown convex parts of a
+// shape, with bounding circles for quick tests whether a part is far away.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 
 namespace qsmpc::controller {
 
-/// A part with a circle about it.
+/// A part with its bounding circle.
 struct BoundedPart {
   ConvexPart part;
   Circle circle;
 };
 
-/// A turn of the plane about a point, and then a shift.
+/// A rotation of the plane about a point, followed by a translation.
 struct PlaneMotion {
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();
@@ -29,14 +29,15 @@ struct PlaneMotion {
   [[nodiscard]] Eigen::Vector2d of(const Eigen::Vector2d& point) const {
     return centre + shift + turn * (point - centre);
   }
-  /// What is moved to `point`.
+  /// The inverse: the point that is moved to `point`.
   [[nodiscard]] Eigen::Vector2d back(const Eigen::Vector2d& point) const {
     return centre + turn.transpose() * (point - centre - shift);
   }
   [[nodiscard]] BoundedPart of(const BoundedPart& one) const;
 };
 
-/// Where parts are: moved so, and by a Gaussian of this covariance in the plane besides.
+/// The place of parts: moved by `motion`, plus a Gaussian displacement in the plane with this
+/// covariance.
 struct PlacedAs {
   PlaneMotion motion{};
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
@@ -51,47 +52,47 @@ struct PlacedAs {
 
 class ShapeParts {
  public:
-  /// The shape with all that is within `growth` of it. `shape` must be one that check_planar_shape
-  /// takes.
+  /// The shape and all points within `growth` of it. `shape` must pass check_planar_shape.
   ShapeParts(const PlanarShape& shape, double growth);
 
   [[nodiscard]] const std::vector<BoundedPart>& all() const { return parts_; }
 
-  /// The surface of the nearest part of those that are nearer than `enough`; else one at least as
-  /// far.
+  /// The surface of the nearest part if it is nearer than `enough`; otherwise one at least as far
+  /// as `enough`.
   [[nodiscard]] SurfacePoint nearest(const Eigen::Vector2d& point, double enough) const;
 
   /// Bounds of P(z + e in the parts).
   [[nodiscard]] RegionProbability probability(const SurrogateLaw& state, PlaneAxes axes) const;
-  /// Bounds of P(z + e in the parts where they are), which is independent of the state.
+  /// The same for parts at the random place `where`, which is independent of the state.
   [[nodiscard]] RegionProbability probability(const SurrogateLaw& state, PlaneAxes axes,
                                               const PlacedAs& where) const;
 
-  /// The half-space with the normal `towards` (state_dim), or that of a half-plane itself, that
-  /// holds the parts, moved; none where there is none, or where `towards` is not in the plane.
+  /// The half-space with the normal `towards` (state_dim) that contains the moved parts, or the
+  /// half-plane itself if the shape is one. Empty if there is no such half-space or `towards` is
+  /// not in the plane.
   [[nodiscard]] std::vector<HalfSpace> half_space_cover(
       const Eigen::Ref<const Eigen::VectorXd>& towards, PlaneAxes axes,
       const PlaneMotion& motion) const;
 
  private:
-  /// The sum over the parts, of which `far` bounds those that are far away and `near` all others,
-  /// or what `near` makes of the hull.
+  /// The sum over the parts of the bound `far` for distant parts and `near` for all others, or the
+  /// bound `near` of the hull if that is less.
   template <class Far, class Near>
   [[nodiscard]] RegionProbability sum_of(double worthwhile, const Far& far, const Near& near) const;
 
   std::vector<BoundedPart> parts_;
-  std::optional<BoundedPart> hull_;  ///< of several parts
+  std::optional<BoundedPart> hull_;  ///< if there are several parts
 };
 
-/// At least E(1 − d(y, part)²/t²)₊ for y ~ N(centre, covariance): where it is near 1 all the same,
-/// as for a part that is much nearer than t, it is 1, which takes no time.
+/// An upper bound of E(1 − d(y, part)²/t²)₊ for y ~ N(centre, covariance). Where it would be near 1
+/// anyway, as for a part much nearer than t, it is 1, which saves the computation.
 [[nodiscard]] double soft_probability_of(const ConvexPart& part, const Eigen::Vector2d& centre,
                                          const Eigen::Matrix2d& covariance, double t);
 
-/// Parts as Gaussians of one covariance about many centres see them.
+/// Parts prepared for Gaussians of one covariance about many centres.
 class SoftShape final : public SoftRegion {
  public:
-  /// `covariance`: in the plane. Refers to the parts and the centres.
+  /// `covariance`: in the plane. Keeps references to the parts and the centres.
   SoftShape(const std::vector<BoundedPart>& parts, PlaneAxes axes, const GaussianCentres& centres,
             const Eigen::Matrix2d& covariance);
 
@@ -114,19 +115,21 @@ class SoftShape final : public SoftRegion {
 [[nodiscard]] Eigen::Matrix2d plane_covariance(const Eigen::Ref<const Eigen::MatrixXd>& covariance,
                                                PlaneAxes axes);
 
-/// The covariance with variances of at least what counts as certain, `largest` being the largest of
-/// the whole law: in one that is less there is no standard deviation to count in.
+/// The covariance with its variances raised to at least the threshold of certainty; `largest` is
+/// the largest variance of the whole law. A smaller variance has no usable standard deviation to
+/// measure distances in.
 [[nodiscard]] Eigen::Matrix2d uncertain(Eigen::Matrix2d covariance, double largest);
 
-/// Beyond so many standard deviations a tail is 0 in doubles.
+/// Beyond this many standard deviations a tail is 0 in double precision.
 inline constexpr double kNoTail = 39.0;
 
-/// An outline in the plane of coordinates x and y of the state, of which two are `axes`: as it is
-/// where they are, and else from where to where it is.
+/// An outline given in the plane of `axes`, shown in the plane of state coordinates x and y: itself
+/// if these are `axes`, otherwise the rectangle of its extent.
 [[nodiscard]] Outline outline_in(const Eigen::Matrix2Xd& corners, PlaneAxes axes, Eigen::Index x,
                                  Eigen::Index y);
 
-/// The penalty h of planning/cost/penalty.hpp of a distance, in lengths, and its derivative.
+/// The penalty h of planning/cost/penalty.hpp and its derivative, for a distance in units of the
+/// penalty's length.
 struct Hinge {
   double value = 0.0;
   double slope = 0.0;
@@ -136,8 +139,8 @@ struct Hinge {
 /// The largest variance in any direction.
 [[nodiscard]] double largest_variance(const Eigen::Matrix2d& covariance);
 
-/// What the questions about many points share. `nearest(point, enough)` is the surface of what is
-/// nearest, where that is nearer than `enough`; else one at least as far.
+/// Shared by the queries about many points. `nearest(point, enough)` returns the nearest surface if
+/// it is nearer than `enough`; otherwise one at least that far away.
 ///
 /// Lowers `least` (n) to the distances of the points.
 template <class Nearest>
@@ -164,7 +167,8 @@ void lower_faces(const Nearest& nearest, PlaneAxes axes, const Points& points,
   }
 }
 
-/// `scale` times the penalty of the batch's particles, whose derivatives it adds to the adjoint.
+/// Returns `scale` times the penalty of the batch's particles and adds its derivatives to the
+/// adjoint.
 template <class Nearest>
 double add_penalty_of(const Nearest& nearest, PlaneAxes axes, double scale,
                       const PenaltyBatch& batch) {

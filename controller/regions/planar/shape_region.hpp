@@ -1,4 +1,4 @@
-// The region of a shape of the plane of position.
+// The region of a shape in the plane of position.
 #pragma once
 
 #include "controller/regions/planar/convex_bound.hpp"
@@ -6,8 +6,8 @@
 
 namespace qsmpc::controller {
 
-/// The shape with all that is nearer to it than growth.radius, in the plane of growth.x and
-/// growth.y, which both must be states. `shape` must be one that check_planar_shape takes.
+/// The shape and all points nearer to it than growth.radius, in the plane of the states growth.x
+/// and growth.y (neither may be -1). `shape` must pass check_planar_shape.
 [[nodiscard]] RegionPointer make_shape(const PlanarShape& shape, const Growth& growth);
 
 }  // namespace qsmpc::controller

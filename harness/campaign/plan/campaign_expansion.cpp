@@ -20,10 +20,10 @@
 namespace qsmpc::harness {
 namespace {
 
-// Every variant holds its settings as text; a short file could ask for gigabytes of them.
+// Every variant holds its settings as text; a short file could request gigabytes of them.
 constexpr double kMostSettingBytes = 16.0 * 1024 * 1024;
-constexpr std::int64_t kCountedTo = 1'000'000'000'000'000;  // a larger count is not told exactly
-constexpr int kMostRefused = 100;  // of variants; more help nobody, and each takes its time
+constexpr std::int64_t kCountedTo = 1'000'000'000'000'000;  // larger counts are not exact
+constexpr int kMostRefused = 100;  // refused variants; more are of no use, and each takes time
 
 std::int64_t size_of(const auto& list) { return static_cast<std::int64_t>(list.size()); }
 
@@ -48,7 +48,7 @@ std::size_t bytes_of(const std::vector<CampaignSetting>& settings) {
   return bytes;
 }
 
-/// Of the settings of all variants together.
+/// Total size of the settings of all variants.
 double setting_bytes(const CampaignDraft& draft) {
   const auto points = static_cast<double>(grid_points(draft));
   double bytes = 0.0;
@@ -109,7 +109,7 @@ class Expansion {
   CampaignRefusals refusals_;
   VariantScenarios scenarios_;
   PlantChecks plants_;
-  std::vector<std::string> paths_;  // of the scenarios
+  std::vector<std::string> paths_;  // scenario files
   std::vector<CampaignVariant> variants_;
   int refused_ = 0;
 };
@@ -140,11 +140,10 @@ bool Expansion::is_small_enough() {
   return false;
 }
 
-/// A setting that replaces an earlier one, or the mapping that the earlier one is in, would undo
-/// it without a word.
+/// A setting that replaces an earlier one, or the mapping that contains it, would silently undo it.
 void Expansion::refuse_undone() {
   for (const SettingGroup& variant : draft_.variants) {
-    std::unordered_set<std::string> set;  // every key that is set, and those that lead to it
+    std::unordered_set<std::string> set;  // all keys set, and their parents
     const auto take = [&](const std::string& key, int line, const std::string& path) {
       if (set.contains(key)) {
         refusals_.add({.line = line, .path = path},
@@ -176,7 +175,7 @@ SettingGroup Expansion::with_grid_point(const SettingGroup& variant, std::int64_
   return settings;
 }
 
-/// What the settings of each variant and point of the grid are called.
+/// The label of the settings of each variant and grid point.
 std::vector<std::string> Expansion::all_settings() const {
   const std::int64_t points = grid_points(draft_);
   std::vector<std::string> names;
@@ -197,7 +196,7 @@ void Expansion::add_scenario(const CampaignChoice& scenario, const std::string& 
       add_settings(scenario, path, with_grid_point(variant, point));
     }
   }
-  // What is wrong with the plants should show before the settings are right.
+  // Problems with the plants are reported even while no settings are valid.
   if (variants_.size() == before && validate_scenario_file(path).empty()) {
     add_settings(scenario, path, {});
   }
@@ -228,7 +227,7 @@ void Expansion::add_settings(const CampaignChoice& scenario, const std::string& 
   }
 }
 
-/// What would make a campaign's drives something else than drives of their seeds.
+/// Refuses what would make a drive depend on more than its seed.
 void Expansion::refuse_fixed_noise(const CampaignChoice& scenario, const Scenario& resolved) {
   if (!resolved.disturbance.seeds.empty()) {
     refusals_.add(scenario.place, "a scenario with disturbance.seeds",

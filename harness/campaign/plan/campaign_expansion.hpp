@@ -1,4 +1,4 @@
-// All combinations that a campaign file asks for, each loaded and checked before anything is
+// Expands a campaign file into all of its variants, each loaded and checked before anything is
 // driven.
 #pragma once
 
@@ -10,11 +10,11 @@ namespace qsmpc::harness {
 
 inline constexpr std::int64_t kMostCampaignVariants = 10'000;
 
-/// Scenarios, variants, points of the grid (its first key varies slowest) and plants combined, the
-/// first of them slowest. Everything wrong is noted in `problems`; the campaign is valid only if
-/// nothing was. Problems with a setting or plant are in the campaign's file, at the line of it;
-/// problems of a scenario file are in that file. More than kMostCampaignVariants are refused
-/// without being made.
+/// Combines scenarios, variants, grid points (the grid's first key varies slowest) and plants;
+/// scenarios vary slowest, plants fastest. Problems are added to `problems`; the campaign is valid
+/// only if there are none. A problem with a setting or plant is reported at its line of the
+/// campaign file, a problem of a scenario file in that file. More than kMostCampaignVariants are
+/// refused without being expanded.
 [[nodiscard]] Campaign expand_campaign(const CampaignDraft& draft, Problems& problems);
 
 }  // namespace qsmpc::harness

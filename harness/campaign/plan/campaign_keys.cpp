@@ -10,7 +10,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Names or paths, each once.
+/// A list of distinct names or paths.
 ListValue choices_value() {
   return list_of_values(TextValue{.what = "a name or path"}, {.least = 1, .once = true});
 }

@@ -1,4 +1,4 @@
-// The keys of a campaign file, and what their values may be.
+// The keys of a campaign file and their admissible values.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,16 @@ namespace qsmpc::harness {
 inline constexpr std::size_t kLongestCampaignDescription = 500;  ///< bytes; one line
 inline constexpr int kMostCampaignSeeds = 1'000'000'000;
 inline constexpr std::size_t kMostListedSeeds = 100'000;
-inline constexpr std::size_t kMostFamilies = 6;  ///< of a figure: as many colours as there are
+inline constexpr std::size_t kMostFamilies = 6;  ///< of a figure: the number of available colours
 inline constexpr int kMostRareParticles = 100'000;
 inline constexpr NumberRange kRareFloor{.least = 0.0, .most = 0.1};
-/// Over the last seed: a store's whole numbers are signed.
+/// One past the last seed: integers in the store are signed.
 inline constexpr std::uint64_t kSeedEnd = std::uint64_t{1} << 63U;
 
 inline constexpr NumberRange kHalfwidthRange{.least = 0.0, .most = 0.25, .above_least = true};
 inline constexpr NumberRange kStopConfidenceRange{.least = 0.5, .most = 0.999999};
 
-/// What `traces` may be, in the order of TraceKeeping.
+/// The values of `traces`, in the order of TraceKeeping.
 [[nodiscard]] const std::vector<std::string>& trace_keeping_names();
 
 [[nodiscard]] const std::vector<KeyDescription>& campaign_keys();
@@ -33,7 +33,7 @@ inline constexpr NumberRange kStopConfidenceRange{.least = 0.5, .most = 0.999999
 /// The JSON Schema of a campaign file.
 [[nodiscard]] nlohmann::ordered_json campaign_schema();
 
-/// The table of its keys in the documentation.
+/// The documentation's table of its keys.
 [[nodiscard]] std::vector<DocumentTable> campaign_tables();
 
 }  // namespace qsmpc::harness

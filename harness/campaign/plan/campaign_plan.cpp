@@ -15,9 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kWidestName = 60;     // of a column; longer names push the rest of their line
-constexpr std::size_t kLongestText = 1000;  // bytes of a name or of overrides, for a terminal
-constexpr std::size_t kSeedsShown = 10;     // of a list
+constexpr std::size_t kWidestName = 60;  // column width; longer names shift the rest of their line
+constexpr std::size_t kLongestText = 1000;  // bytes of a name or its overrides in terminal output
+constexpr std::size_t kSeedsShown = 10;     // of a list of seeds
 
 std::string counted(std::int64_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");

@@ -1,4 +1,4 @@
-// What a campaign would drive, before it does.
+// The plan of a campaign: what it would drive.
 #pragma once
 
 #include <string>
@@ -16,10 +16,10 @@ namespace qsmpc::harness {
 [[nodiscard]] std::string campaign_size_text(const Campaign& campaign);
 
 /// A table with a line for every variant (its number, name, overrides and plant), then the seeds,
-/// the episodes in all and which traces are kept.
+/// the total number of episodes and which traces are kept.
 [[nodiscard]] std::string campaign_plan_text(const Campaign& campaign);
 
-/// The same as one object with stable keys, ending in a new line; docs/campaign.md describes them.
+/// The same as one object with stable keys, ending in a newline; docs/campaign.md describes them.
 [[nodiscard]] std::string campaign_plan_json(const Campaign& campaign);
 
 }  // namespace qsmpc::harness

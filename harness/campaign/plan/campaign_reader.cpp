@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr const char* kNoSettings = "base";  // the name of {} in a list of variants
+constexpr const char* kNoSettings = "base";  // the name of an empty mapping in a list of variants
 
 class CampaignReader {
  public:
@@ -52,7 +52,7 @@ class CampaignReader {
   void read_until();
   void read_rare();
 
-  /// The value of a key, which is then known.
+  /// The value of a key; marks the key as known.
   const YamlNode* take(const std::string& key) {
     (void)root_.holds_text(key);
     return tree_.find(key);
@@ -140,7 +140,7 @@ void CampaignReader::read_plants(const YamlNode& node) {
 void CampaignReader::read_seeds_or_say_why_not() {
   const YamlNode* single = tree_.find("seed");
   if (tree_.find("seeds") == nullptr && single != nullptr) {
-    (void)take("seed");  // it is what is wrong, and not that another key is missing
+    (void)take("seed");  // reported instead of the missing key `seeds`
     problems_.add(*single, "seed", "a scenario's key",
                   "seeds: {first: 0, count: 1000}, or a list of whole numbers");
   } else {

@@ -1,5 +1,4 @@
-// From a campaign file's tree of keys to what it asks for, before anything is combined or looked
-// up.
+// Reads a campaign file's key tree, before anything is combined or looked up.
 #pragma once
 
 #include <cstdint>
@@ -19,32 +18,32 @@ struct CampaignPlace {
   std::string path{};  ///< dotted, e.g. "plants.1"
 };
 
-/// A scenario or plant, as the file names it.
+/// A scenario or plant as named in the file.
 struct CampaignChoice {
   std::string text;
   CampaignPlace place;
 };
 
-/// KEY: VALUE, of a variant or of a point of the grid.
+/// KEY: VALUE, of a variant or of a grid point.
 struct CampaignSetting {
   std::string key;  ///< dotted path in the scenario
   YamlNode value{};
   std::string text{};   ///< KEY=VALUE, as after --set
-  std::string owner{};  ///< dotted path of what holds it, e.g. "variants.fast" or "grid"
-  std::string item{};   ///< ".2" for value 2 of the grid's key; else empty
+  std::string owner{};  ///< dotted path of its parent, e.g. "variants.fast" or "grid"
+  std::string item{};   ///< ".2" for value 2 of a grid key; else empty
   int line = 0;
 };
 
 /// Whether the dotted path `inner` is `outer` or within it: "controller.cost" is in "controller".
 [[nodiscard]] bool is_key_within(const std::string& inner, const std::string& outer);
 
-/// Where `key`, a dotted path in the scenario that is within `setting` or leads to it, is in the
-/// campaign file: "variants.fast.controller.horizon", "grid.controller.horizon.2".
+/// The path in the campaign file of `key`, a dotted path in the scenario that is within `setting`
+/// or leads to it: "variants.fast.controller.horizon", "grid.controller.horizon.2".
 [[nodiscard]] std::string path_of(const CampaignSetting& setting, const std::string& key);
 
 /// Settings that are applied together.
 struct SettingGroup {
-  std::string name{};  ///< empty where the file has no variants
+  std::string name{};  ///< empty if the file has no variants
   std::vector<CampaignSetting> settings{};
   CampaignPlace place{};
 };
@@ -56,19 +55,19 @@ struct GridAxis {
   std::vector<CampaignSetting> values;
 };
 
-/// A family of the figure of risk against cost, before its members are known to be there.
+/// A family of the risk-against-cost figure, before its members are checked.
 struct FamilyDraft {
   std::string name;
   std::vector<CampaignChoice> settings{};
 };
 
 struct CampaignDraft {
-  std::string file;  ///< what errors call it
+  std::string file;  ///< its name in error messages
   std::string name;
-  std::vector<CampaignChoice> scenarios;  ///< none only if a problem was noted
+  std::vector<CampaignChoice> scenarios;  ///< empty only if a problem was reported
   std::vector<SettingGroup> variants;     ///< at least one
   std::vector<GridAxis> grid;
-  std::vector<CampaignChoice> plants;  ///< at least one; an empty text is the scenario's own
+  std::vector<CampaignChoice> plants;  ///< at least one; an empty text: the scenario's own
   SeedSet seeds;
   TraceKeeping traces = TraceKeeping::kNone;
   std::int64_t trace_sample = 0;
@@ -77,8 +76,8 @@ struct CampaignDraft {
   std::optional<RareSettings> rare{};
 };
 
-/// Reads `tree`. Everything wrong with it is noted in `problems`, and left out of what is returned.
-/// The name defaults to the stem of `file`.
+/// Reads `tree`. Invalid parts are added to `problems` and left out of the result. The name
+/// defaults to the stem of `file`.
 [[nodiscard]] CampaignDraft read_campaign(const YamlNode& tree, const std::string& file,
                                           Problems& problems);
 

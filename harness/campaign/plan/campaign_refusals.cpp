@@ -6,7 +6,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kMany = 100;  // as many as Problems keeps
+constexpr std::size_t kMany = 100;  // the number that Problems keeps
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// The problems of a campaign, each noted once: what is wrong with one value shows in every variant
-// that has it.
+// Collects the problems of a campaign without duplicates: a problem with one value shows up in
+// every variant that has it.
 #pragma once
 
 #include <string>
@@ -13,16 +13,16 @@ namespace qsmpc::harness {
 
 class CampaignRefusals {
  public:
-  /// `file`: of the campaign. `problems` takes them, and must outlive it.
+  /// `file`: the campaign's. `problems` receives the problems and must outlive this object.
   CampaignRefusals(std::string file, Problems& problems);
 
-  /// Notes a problem at a place of the campaign's file.
+  /// Adds a problem at a place in the campaign's file.
   void add(const CampaignPlace& place, std::string found, std::string expected);
-  /// Notes a problem of another file.
+  /// Adds a problem in another file.
   void add(InputError::Where where);
 
   [[nodiscard]] bool empty() const { return seen_.empty(); }
-  /// Whether there are more than anyone reads.
+  /// Whether there are so many problems that looking for more is pointless.
   [[nodiscard]] bool many() const;
 
  private:

@@ -16,7 +16,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kLongestKey = 200;  // bytes; of a dotted path
+constexpr std::size_t kLongestKey = 200;  // bytes of a dotted path
 constexpr const char* kSeedExpected = "a whole number from 0 to 9223372036854775807";
 
 void note_node(const YamlNode& node, std::string path, std::string expected, Problems& problems) {
@@ -29,7 +29,7 @@ std::optional<std::uint64_t> parse_seed(const YamlNode& node) {
   return seed && *seed < kSeedEnd ? seed : std::nullopt;
 }
 
-/// Whether a scenario's `key` may be set; `path` is where the file does it.
+/// Whether a scenario's `key` may be set; `path` is where the file sets it.
 bool check_key(const YamlNode& value, const std::string& key, const std::string& path,
                Problems& problems) {
   if (!is_line_of_text(key, kLongestKey) || key.find('=') != std::string::npos) {

@@ -1,5 +1,5 @@
-// The parts of a campaign file that other plans of drives have too, read from their tree.
-// Everything wrong is noted, and left out of what is returned.
+// Reads the parts that campaign files share with other plans of drives. Invalid parts are added to
+// `problems` and left out of the results.
 #pragma once
 
 #include <string>
@@ -12,13 +12,13 @@
 
 namespace qsmpc::harness {
 
-/// Whether `text` is not empty, of at most `longest` bytes, and has no control character.
+/// Whether `text` is non-empty, at most `longest` bytes long, and free of control characters.
 [[nodiscard]] bool is_line_of_text(const std::string& text, std::size_t longest);
 
-/// The line of the key that `node` is the value of, else its own.
+/// The line of the key whose value `node` is, else its own line.
 [[nodiscard]] int line_of(const YamlNode& node);
 
-/// A list of names or paths, each once; `path` is its dotted path in the file.
+/// A list of distinct names or paths; `path` is its dotted path in the file.
 [[nodiscard]] std::vector<CampaignChoice> read_choices(const YamlNode& list,
                                                        const std::string& path, Problems& problems);
 
@@ -27,12 +27,12 @@ namespace qsmpc::harness {
                                                          const std::string& path,
                                                          Problems& problems);
 
-/// {KEY: [VALUE, …], …}, as of a grid, at the dotted path `path`.
+/// {KEY: [VALUE, …], …}, as in a grid, at the dotted path `path`.
 [[nodiscard]] std::vector<GridAxis> read_axes(const YamlNode& map, const std::string& path,
                                               Problems& problems);
 
-/// What `key` of `section` holds: {first, count}, or a list of seeds. One that is not there is
-/// noted, too.
+/// The seeds under `key` of `section`: {first, count}, or a list of seeds. A missing key is a
+/// problem.
 [[nodiscard]] SeedSet read_seeds(Section& section, const std::string& key, Problems& problems);
 
 }  // namespace qsmpc::harness

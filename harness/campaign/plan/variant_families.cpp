@@ -14,14 +14,14 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kFamiliesKey = "risk_against_cost";
-constexpr std::size_t kMostKnownTold = 30;  // of the settings that a member could have been
+constexpr std::size_t kMostKnownTold = 30;  // of the valid members listed in an error
 
 bool is_family_name(const std::string& name) {
   return !name.empty() && name.size() <= kLongestName && !find_text_problem(name) &&
          name.find_first_of("\n\r\t") == std::string::npos;
 }
 
-/// A member that is no text, or is there already, is noted and left out.
+/// Members that are not text or are duplicates are reported and left out.
 std::vector<CampaignChoice> members_of(const YamlNode& list, const std::string& path,
                                        Problems& problems) {
   std::vector<CampaignChoice> members;
@@ -40,7 +40,7 @@ std::vector<CampaignChoice> members_of(const YamlNode& list, const std::string& 
   return members;
 }
 
-/// "w20 (known: w2, w20)"; of very many, those that are near and the first ones.
+/// "w20 (known: w2, w20)"; of more than kMostKnownTold, the nearest and then the first ones.
 std::string expected_settings(const std::string& name, const std::vector<std::string>& known) {
   if (known == std::vector<std::string>{""}) return "variants or a grid, whose settings have names";
   if (known.size() <= kMostKnownTold) return expected_names(name, known);
@@ -57,7 +57,7 @@ std::string expected_settings(const std::string& name, const std::vector<std::st
 std::vector<FamilyDraft> read_families(Section figure, const YamlNode* node, Problems& problems) {
   if (!figure.present()) return {};
   const std::string path = figure.path_of(kFamiliesKey);
-  (void)figure.holds_text(kFamiliesKey);  // the key is known
+  (void)figure.holds_text(kFamiliesKey);  // marks the key as known
   figure.refuse_unread();
   const YamlNode* families = node->find(kFamiliesKey);
   if (families == nullptr) return {};

@@ -11,14 +11,12 @@
 
 namespace qsmpc::harness {
 
-/// The families of `figure`, the section of `node`, in the file's order; none where the key is not
-/// there (`node` is nullptr). Everything wrong is noted in `problems`, and left out of what is
-/// returned.
+/// The families of `figure`, the section of `node`, in the file's order; none if the key is missing
+/// (`node` is nullptr). Invalid parts are added to `problems` and left out of the result.
 [[nodiscard]] std::vector<FamilyDraft> read_families(Section figure, const YamlNode* node,
                                                      Problems& problems);
 
-/// The families of `drafts`. Refuses members that are not one of `known`, the settings that the
-/// campaign has.
+/// The families of `drafts`. Refuses members that are not among `known`, the campaign's settings.
 [[nodiscard]] std::vector<VariantFamily> known_families(const std::vector<FamilyDraft>& drafts,
                                                         const std::vector<std::string>& known,
                                                         CampaignRefusals& refusals);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kUnique = "names that differ";
 
-/// What scenario i is called, of which variants[i·per_scenario] is one.
+/// The name of each scenario i, whose first variant is variants[i·per_scenario].
 std::vector<std::string> scenario_labels(const std::vector<CampaignVariant>& variants,
                                          const std::vector<std::string>& paths) {
   const std::size_t per_scenario = variants.size() / paths.size();
@@ -67,7 +67,7 @@ void name_variants(const CampaignDraft& draft, const std::vector<std::string>& s
     if (variant.name.empty()) {
       variant.name = variant.settings.empty() ? scenario : variant.settings;
     }
-    // Parts that hold what joins them can still make two names one.
+    // Parts that contain the separator can still give two variants the same name.
     if (seen.insert(variant.name).second || !refusals.empty()) continue;
     refusals.add(CampaignPlace{}, "two variants called " + variant.name, kUnique);
   }

@@ -1,4 +1,4 @@
-// What the variants of a campaign are called.
+// Names of a campaign's variants.
 #pragma once
 
 #include <string>
@@ -10,10 +10,11 @@
 
 namespace qsmpc::harness {
 
-/// Names `variants`, in the order in which they were made from `draft`: by scenario, settings and
-/// plant, those of which the campaign has more than one; else by settings or scenario. A scenario
-/// is called by its own name, or by the stem of its file (`scenario_paths`) where two have the same
-/// name. Refuses names that are not unique.
+/// Names `variants`, which are in the order of their expansion from `draft`. A name consists of
+/// those of scenario, settings and plant of which the campaign has more than one; if there are
+/// none, it is that of the settings or else the scenario. A scenario goes by its own name, or by
+/// the stem of its file (`scenario_paths`) if two have the same name. Refuses names that are not
+/// unique.
 void name_variants(const CampaignDraft& draft, const std::vector<std::string>& scenario_paths,
                    std::vector<CampaignVariant>& variants, CampaignRefusals& refusals);
 

@@ -24,11 +24,11 @@ namespace fs = std::filesystem;
 using Settings = std::vector<CampaignSetting>;
 
 std::optional<std::string> file_beside(const std::string& file, const std::string& name) {
-  const fs::path path = fs::path(file).parent_path() / name;  // name itself where it is absolute
+  const fs::path path = fs::path(file).parent_path() / name;  // `name` itself if it is absolute
   return is_file(path) ? std::optional(path.string()) : std::nullopt;
 }
 
-/// Whether a setting says what `key` is, itself or in a mapping around it.
+/// Whether a setting sets `key`, directly or in an enclosing mapping.
 bool sets(const Settings& settings, const std::string& key) {
   for (const CampaignSetting& setting : settings) {
     if (!is_key_within(key, setting.key)) continue;
@@ -44,8 +44,8 @@ bool sets(const Settings& settings, const std::string& key) {
   return false;
 }
 
-/// The setting that a problem with `key` is about: the last one that holds it, else the last one
-/// that is within it.
+/// The setting to blame for a problem with `key`: the last one that contains it, else the last one
+/// within it.
 const CampaignSetting* setting_about(const Settings& settings, const std::string& key) {
   const auto last_that = [&](const auto& is_meant) -> const CampaignSetting* {
     const auto at = std::find_if(settings.rbegin(), settings.rend(), is_meant);
@@ -65,8 +65,8 @@ std::vector<std::string> texts_of(const Settings& settings, std::size_t count) {
   return texts;
 }
 
-/// The setting with which the scenario, valid without those from it on, is no longer valid; nullptr
-/// where it is not valid on its own.
+/// A setting that makes the scenario, valid with those before it, invalid; found by bisection.
+/// nullptr if the scenario is invalid without settings.
 const CampaignSetting* breaking_setting(const std::string& path, const Settings& settings) {
   const auto is_valid_with = [&](std::size_t count) {
     return validate_scenario_file(path, texts_of(settings, count)).empty();
@@ -85,13 +85,13 @@ CampaignPlace place_of(const CampaignSetting& setting, const std::string& key) {
   return {.line = setting.line, .path = path_of(setting, key)};
 }
 
-/// `first`: what was thrown.
+/// `first`: the problem that was thrown.
 void refuse_scenario(const std::string& path, const Settings& settings,
                      const InputError::Where& first, CampaignRefusals& refusals) {
-  std::optional<const CampaignSetting*> breaking;  // sought once, where it is needed
+  std::optional<const CampaignSetting*> breaking;  // determined on first use
   std::vector<InputError::Where> problems =
       validate_scenario_file(path, texts_of(settings, settings.size()));
-  if (problems.empty()) problems.push_back(first);  // of a file that was changed since
+  if (problems.empty()) problems.push_back(first);  // the file has changed since
   for (InputError::Where& where : problems) {
     if (where.file == kOverrideSource && !settings.empty()) {
       const CampaignSetting* setting = setting_about(settings, where.key);
@@ -109,15 +109,15 @@ void refuse_scenario(const std::string& path, const Settings& settings,
   }
 }
 
-/// Equal for scenarios whose plants are the same.
+/// A text that is equal for scenarios with the same plant.
 std::string plant_text(Scenario scenario) {
-  // A disturbance that is added to the state makes no other plant.
+  // A disturbance added to the state does not change the plant.
   Scenario::Disturbance& disturbance = scenario.disturbance;
   if (disturbance.kind == "state") disturbance.covariance.setZero();
   disturbance.sensor.setZero();
   const std::string yaml = to_yaml(scenario);
   std::string text;
-  bool is_of_plant = false;  // the key without an indent that was last met
+  bool is_of_plant = false;  // whether the current top-level key belongs to the plant
   for (std::size_t begin = 0; begin < yaml.size();) {
     const std::size_t end = std::min(yaml.find('\n', begin), yaml.size());
     const std::string_view line = std::string_view(yaml).substr(begin, end - begin);

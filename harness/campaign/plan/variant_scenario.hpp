@@ -1,5 +1,5 @@
-// The scenario of one variant: found, loaded with its settings, given its plant; and what is wrong
-// with it said in terms of the campaign's file.
+// The scenario of one variant: finds it, loads it with its settings, gives it its plant, and
+// reports problems in terms of the campaign's file.
 #pragma once
 
 #include <map>
@@ -14,21 +14,21 @@
 
 namespace qsmpc::harness {
 
-/// The path of a scenario that the campaign in `file` names: a path relative to that file's folder,
-/// or a shipped one's name. Nothing, and a refusal, if there is none.
+/// The path of a scenario named in the campaign `file`: a path relative to that file's folder, or
+/// the name of a shipped one. Nothing, and a refusal, if there is none.
 [[nodiscard]] std::optional<std::string> find_beside(const std::string& file,
                                                      const CampaignChoice& scenario,
                                                      CampaignRefusals& refusals);
 
-/// Scenarios as variants have them, each file read once.
+/// Loads the scenarios of variants, reading each file once.
 class VariantScenarios {
  public:
   explicit VariantScenarios(CampaignRefusals& refusals) : refusals_(&refusals) {}
 
-  /// The scenario in `path` with `settings`, so that an episode depends on nothing but it and its
-  /// seed: seed 0, and unless a setting says otherwise one thread and no deadline (what a plan is
-  /// after a time depends on the machine). Nothing, and refusals, if it is not valid: at the
-  /// setting that makes it so, or in the scenario's own file.
+  /// The scenario in `path` with `settings`, made such that an episode depends only on it and its
+  /// seed: seed 0, and unless a setting says otherwise one thread and no deadline (which would make
+  /// plans depend on the machine). Nothing, and refusals, if it is invalid: at the setting that
+  /// makes it invalid, or in the scenario's own file.
   [[nodiscard]] std::optional<Scenario> load(const std::string& path, const SettingGroup& settings);
 
  private:
@@ -36,14 +36,14 @@ class VariantScenarios {
   std::map<std::string, ScenarioBase> files_;
 };
 
-/// Gives plants to scenarios, each different one tried once.
+/// Gives plants to scenarios; each distinct plant is constructed once as a check.
 class PlantChecks {
  public:
   PlantChecks(const CampaignDraft& draft, CampaignRefusals& refusals)
       : draft_(&draft), refusals_(&refusals) {}
 
-  /// `resolved` on `plant`, a path relative to the campaign's folder first, that can be made.
-  /// Nothing, and a refusal, if it cannot.
+  /// `resolved` with `plant`, which is first looked up as a path relative to the campaign's folder.
+  /// Nothing, and a refusal, if the plant cannot be constructed.
   [[nodiscard]] std::optional<Scenario> choose(const Scenario& resolved,
                                                const CampaignChoice& plant,
                                                const CampaignChoice& scenario,

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A probability of a drive, and the rate of the periods that it comes to.
+/// A probability per drive and the corresponding rate per period.
 Json rate_json(double of_drive, const RateInterval& interval, double periods) {
   return {{"mean", of_drive},
           {"interval", interval_json(interval)},

@@ -1,4 +1,4 @@
-// What a variant's drives say of rare outcomes, as JSON.
+// A variant's rare-outcome statistics as JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,5 +1,5 @@
-// What one run of splitting over the drives of a variant found; the store keeps it beside the
-// episode of its seed.
+// The result of one splitting run over the drives of a variant; the store keeps it with the episode
+// of its seed.
 #pragma once
 
 #include <cstddef>
@@ -21,26 +21,25 @@ struct RareDrive {
   friend bool operator==(const RareDrive&, const RareDrive&) = default;
 };
 
-/// Of the drives that a run found, at most so many are kept, each once.
+/// Maximum number of distinct unsafe drives kept per run.
 inline constexpr std::size_t kMostFound = 5;
 
 struct RareRow {
   int particles = 0;
   double floor = 0.0;        ///< SplitSettings::floor
-  double probability = 0.0;  ///< that a drive is unsafe at some control instant: an estimate
-  double collision = 0.0;    ///< the part of it in which the first such instant is in an obstacle
+  double probability = 0.0;  ///< estimate: a drive is unsafe at some control instant
+  double collision = 0.0;    ///< the part in which the first such instant is in an obstacle
   double left_bounds = 0.0;  ///< the other part
   std::int64_t levels = 0;   ///< SplitRun::levels
-  std::int64_t drives = 0;   ///< driven, the first ones included
-  std::int64_t periods = 0;  ///< driven in them
+  std::int64_t drives = 0;   ///< number driven, the first ones included
+  std::int64_t periods = 0;  ///< periods driven in `drives`
   bool extinct = false;      ///< SplitRun::extinct
   bool below_floor = false;  ///< SplitRun::below_floor
-  // Of the first drives, which are `particles` plain ones, each until it was unsafe.
-  std::int64_t plain_unsafe = 0;   ///< that were unsafe
-  std::int64_t plain_periods = 0;  ///< driven in them
-  std::int64_t plain_faults = 0;   ///< that faulted
-  /// Mean over them of the sum of a drive's next-step certificates; not a number where one has
-  /// none.
+  // The first drives, a plain Monte Carlo sample of `particles`, each until it was unsafe:
+  std::int64_t plain_unsafe = 0;   ///< number of unsafe ones
+  std::int64_t plain_periods = 0;  ///< periods driven in them
+  std::int64_t plain_faults = 0;   ///< number that faulted
+  /// Estimated mean of the sum of a drive's next-step certificates; NaN if a drive has none.
   double certified = kNotANumber;
   std::vector<RareDrive> found{};
 

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// As JSON, which SQLite reads (json_each).
+/// JSON, so that SQL can read it (json_each).
 std::string found_text(const std::vector<RareDrive>& found) {
   Json json = Json::array();
   for (const RareDrive& drive : found) {
@@ -97,7 +97,7 @@ void insert_rare(SQLite::Database& database, std::int64_t variant, std::int64_t 
     statement.bind(next++, count);
   }
   if (std::isnan(row.certified)) {
-    statement.bind(next++);  // nothing
+    statement.bind(next++);  // NULL
   } else {
     statement.bind(next++, row.certified);
   }

@@ -1,4 +1,4 @@
-// Rows about rare outcomes in a campaign's store, to and from the values that stand for them.
+// Reads and writes rare-outcome rows of a campaign's store.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ namespace qsmpc::harness {
 
 /// The columns of a row of the table `rare_run`, as `rare_row_of` expects them.
 [[nodiscard]] std::string rare_columns();
-/// The row that `statement` is at, from column `first` on. Throws SQLite::Exception of a list of
-/// drives that is none.
+/// The current row of `statement`, from column `first` on. Throws SQLite::Exception if its list of
+/// drives is malformed.
 [[nodiscard]] RareRow rare_row_of(SQLite::Statement& statement, int first);
 
-/// Adds the row of an episode. To be called within a transaction.
+/// Adds the row of an episode. Must be called within a transaction.
 void insert_rare(SQLite::Database& database, std::int64_t variant, std::int64_t seed,
                  const RareRow& row);
 
-/// rare_text of the stored campaign; empty where it does not look for rare outcomes.
+/// rare_text of the stored campaign; empty if it does not search for rare outcomes.
 [[nodiscard]] std::string read_rare_settings(SQLite::Database& database);
 void insert_rare_settings(SQLite::Database& database, const std::string& settings);
 

@@ -16,13 +16,13 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Everything after it is of no interest.
+/// What follows the first unsafe instant is irrelevant.
 Scenario ended_when_unsafe(Scenario scenario) {
   scenario.stop_when_unsafe = true;
   return scenario;
 }
 
-/// Drives of a scenario as paths, and what its plain ones say.
+/// Simulates drives of a scenario as paths and counts the faults of the first ones.
 class LevelDrives {
  public:
   LevelDrives(const Scenario& scenario, bool certify, const std::function<bool()>& should_stop)
@@ -43,11 +43,11 @@ class LevelDrives {
                      .value = certified_of(trace)};
   }
 
-  /// Of the first drives.
+  /// Number of first drives that faulted.
   [[nodiscard]] std::int64_t faults() const { return faults_; }
 
  private:
-  /// At control instant `k` of the drive that the unsafe set is of.
+  /// The level at control instant `k` of the drive; `unsafe` is that drive's unsafe set.
   [[nodiscard]] static double level_of(const Eigen::Ref<const Eigen::VectorXd>& state,
                                        const controller::UnsafeSet& unsafe, Eigen::Index k) {
     if (controller::unsafe_part(state, unsafe, k) != controller::UnsafePart::kNone) {
@@ -56,7 +56,7 @@ class LevelDrives {
     return std::min(0.0, -controller::clearance(state, unsafe, k));
   }
 
-  /// At the control instants that the plant came to.
+  /// The levels at the control instants that the plant reached.
   [[nodiscard]] std::vector<double> levels_of(const Trace& trace) const {
     const controller::UnsafeSet unsafe(driven_safe_set(trace));
     const Eigen::MatrixXd states = true_states(trace);
@@ -87,7 +87,7 @@ RareDrive found_drive(const SplitPath& path) {
           .periods = std::ssize(path.levels) - 1};
 }
 
-/// Some of the drives that became unsafe, each once.
+/// Up to kMostFound distinct drives that became unsafe.
 std::vector<RareDrive> found_drives(const SplitRun& run) {
   std::vector<RareDrive> found;
   for (const SplitPath& path : run.events) {
@@ -98,7 +98,7 @@ std::vector<RareDrive> found_drives(const SplitRun& run) {
   return found;
 }
 
-/// The part of the estimate that ended so.
+/// The part of the estimate due to drives with `outcome`.
 double part_of(const SplitRun& run, Outcome outcome) {
   if (run.events.empty()) return 0.0;
   const auto part = std::ranges::count(run.events, static_cast<int>(outcome), &SplitPath::kind);

@@ -1,4 +1,4 @@
-// One run of splitting over the drives of a scenario, towards its unsafe set.
+// One splitting run over the drives of a scenario, towards its unsafe set.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,18 @@
 
 namespace qsmpc::harness {
 
-/// Estimates how probable it is that a drive of `scenario` is unsafe at a control instant, and what
-/// is certified of a drive, from random numbers that `seed` gives. The level of an instant is the
-/// clearance, taken negative, so that it is above 0 exactly where the true state is unsafe.
+/// Estimates the probability that a drive of `scenario` is unsafe at a control instant, and the
+/// mean sum of a drive's certificates, with random numbers from `seed`. The level of an instant is
+/// the negative clearance, made such that it is above 0 exactly where the true state is unsafe.
 ///
-/// Runs on one thread. Nothing where `should_stop`, which is asked before every period, said so.
-/// Throws InputError where a drive is another one when it is driven again with the same seeds, and
-/// what an EpisodeDriver throws.
+/// Runs on one thread. Returns nothing if `should_stop`, which is called before every period,
+/// returned true. Throws InputError if a drive is not reproducible from its seeds, and whatever an
+/// EpisodeDriver throws.
 [[nodiscard]] std::optional<RareRow> rare_run(const Scenario& scenario,
                                               const RareSettings& settings, std::uint64_t seed,
                                               const std::function<bool()>& should_stop);
 
-/// `scenario` as it is driven alone so that it is the drive of `seeds`: its seed and its
-/// disturbance.seeds.
+/// `scenario` with the seed and disturbance.seeds that reproduce the drive of `seeds`.
 [[nodiscard]] Scenario with_seeds(Scenario scenario, const PathSeeds& seeds);
 
 }  // namespace qsmpc::harness

@@ -22,7 +22,7 @@ std::string rare_scenario_file(std::int64_t variant, std::uint64_t seed, std::si
 
 void write_rare_scenarios(const StoreReader& store, const std::string& folder) {
   for (const StoredVariant& variant : store.variants()) {
-    std::optional<Scenario> scenario;  // once it is needed
+    std::optional<Scenario> scenario;  // parsed on first use
     store.for_each_rare(variant.id, [&](std::uint64_t seed, const RareRow& row) {
       if (row.found.empty()) return;
       if (!scenario) {

@@ -1,5 +1,5 @@
-// Scenario files of unsafe drives that runs of splitting found, so that `qsmpc run` drives each of
-// them again alone.
+// Scenario files of the unsafe drives found by splitting runs, so that `qsmpc run` can reproduce
+// each of them.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace qsmpc::harness {
 
-/// The file of drive `number` (from 1) that the run of `seed` found, within the campaign's folder:
-/// "rare/VARIANT/SEED-NUMBER.yaml".
+/// The file, relative to the campaign's folder, of drive `number` (from 1) found by the run of
+/// `seed`: "rare/VARIANT/SEED-NUMBER.yaml".
 [[nodiscard]] std::string rare_scenario_file(std::int64_t variant, std::uint64_t seed,
                                              std::size_t number);
 
-/// Writes the files of all drives that the store of the campaign in `folder` has. Throws IoError,
-/// and what the store throws.
+/// Writes the files of all drives in `store`, the store of the campaign in `folder`. Throws
+/// IoError, and what the store throws.
 void write_rare_scenarios(const StoreReader& store, const std::string& folder);
 
 }  // namespace qsmpc::harness

@@ -46,7 +46,7 @@ void set_limits(const std::vector<RareRow>& rows, const std::vector<double>& est
     return;
   }
   statistics.interval = skewed_mean_interval(estimates, kRareTail);
-  // Below the floor nothing is seen.
+  // A run that ended at the floor may have missed events of at most that probability.
   if (statistics.below_floor > 0) statistics.interval.upper += rows.front().floor;
   statistics.interval.upper = std::min(1.0, statistics.interval.upper);
 }

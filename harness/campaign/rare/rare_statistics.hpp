@@ -1,5 +1,5 @@
-// What the runs of splitting of a variant say together: how probable an unsafe drive is, within
-// which limits, what it took, and what was certified.
+// Combines the splitting runs of a variant: the probability of an unsafe drive with its limits, the
+// effort, and what was certified.
 #pragma once
 
 #include <cstdint>
@@ -21,59 +21,60 @@ struct RareEstimate {
   std::vector<RareDrive> found{};
 };
 
-/// How the limits of the probability come about.
+/// The origin of the limits of the probability.
 enum class RareLimits {
   kEstimates,  ///< skewed_mean_interval of the runs' estimates
-  kPlain,      ///< Clopper and Pearson's of the first drives: too few runs found anything, or none
-               ///< had to split
+  kPlain,  ///< Clopper–Pearson limits of the first drives: fewer than two runs found an unsafe
+           ///< drive, or no run had to split
 };
 
 struct RareStatistics {
   std::vector<RareEstimate> runs{};
   int particles = 0;
   std::int64_t drives = 0;
-  std::int64_t periods = 0;      ///< driven in all, what was driven again included
+  std::int64_t periods = 0;      ///< total driven, repeated ones included
   std::int64_t extinct = 0;      ///< runs that ended without an estimate above 0
   std::int64_t below_floor = 0;  ///< runs that ended at the floor
-  // The first drives of all runs, which are plain ones.
+  // The first drives of all runs, a plain Monte Carlo sample.
   std::int64_t plain_drives = 0;
   std::int64_t plain_unsafe = 0;
   std::int64_t plain_periods = 0;
   std::int64_t plain_faults = 0;
 
-  /// That a drive is unsafe at some control instant: the mean of the runs' estimates, which is
-  /// unbiased.
+  /// Probability that a drive is unsafe at some control instant: the mean of the runs' estimates,
+  /// which is unbiased.
   double probability = 0.0;
   double standard_error = std::numeric_limits<double>::quiet_NaN();
   RateInterval interval{};  ///< 99 %
   RareLimits limits = RareLimits::kEstimates;
-  double collision = 0.0;    ///< the part of it that enters an obstacle first
+  double collision = 0.0;    ///< the part in which an obstacle is entered first
   double left_bounds = 0.0;  ///< the other part
-  /// Plain drives whose share of unsafe ones has the same standard error, and the periods that
-  /// these take; not numbers where it is 0 or not known.
+  /// The number of plain drives whose share of unsafe ones would have the same standard error, and
+  /// the periods that these take; NaN if the standard error is 0 or unknown.
   double worth_drives = std::numeric_limits<double>::quiet_NaN();
   double worth_periods = std::numeric_limits<double>::quiet_NaN();
 
-  /// Mean of the sum of a drive's next-step certificates until it is unsafe, which bounds the
-  /// probability where they are bounds: estimated as that is, with 99 % limits. Not numbers where
-  /// drives were not certified.
+  /// Mean of the sum of a drive's next-step certificates until it is unsafe, estimated like the
+  /// probability, with 99 % limits. It bounds the probability if the certificates are bounds. NaN
+  /// if drives were not certified.
   double certified = std::numeric_limits<double>::quiet_NaN();
   RateInterval certified_interval{.lower = kNotANumber, .upper = kNotANumber};
 
-  /// Periods of a plain drive, until it was unsafe.
+  /// Mean number of periods of a plain drive, until it was unsafe.
   [[nodiscard]] double periods_per_drive() const;
-  /// worth_periods over periods.
+  /// The gain over plain Monte Carlo: worth_periods / periods.
   [[nodiscard]] double gain() const;
-  /// Whether more drives are unsafe than is certified, beyond what chance explains: the limits of
-  /// the one are above those of the other.
+  /// Whether significantly more drives are unsafe than certified: the lower limit of the
+  /// probability is above the upper limit of the certified mean.
   [[nodiscard]] bool exceeds_certified() const;
 };
 
-/// Throws std::invalid_argument of no run.
+/// Combines the runs of `seeds`. Throws std::invalid_argument if there is no run, or not one seed
+/// for each.
 [[nodiscard]] RareStatistics rare_statistics(const std::vector<std::uint64_t>& seeds,
                                              const std::vector<RareRow>& rows);
 
-/// Of a variant in the store; nothing where no episode of it says anything of rare outcomes.
+/// The statistics of a variant in the store; nothing if none of its episodes has a splitting run.
 [[nodiscard]] std::optional<RareStatistics> rare_statistics(const StoreReader& store,
                                                             std::int64_t variant);
 

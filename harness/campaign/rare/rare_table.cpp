@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kRareNameWidth = 20;  // of variants
+constexpr std::size_t kRareNameWidth = 20;  // of variant names
 
 /// At most 8 characters.
 std::string rare_number(double value) {

@@ -1,4 +1,4 @@
-// What a campaign says of rare outcomes, for a terminal.
+// A campaign's rare-outcome results for a terminal.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace qsmpc::harness {
 
-/// A section of campaign_table; empty where the campaign does not look for rare outcomes.
+/// A section of campaign_table; empty if the campaign does not search for rare outcomes.
 [[nodiscard]] std::string rare_table(const CampaignStatistics& statistics);
 
 }  // namespace qsmpc::harness

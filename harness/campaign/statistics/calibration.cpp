@@ -19,7 +19,7 @@ constexpr std::array<double, kCalibrationBins> kEdges = {
     1e-3,  3.1622776601683795e-3,  1e-2,  3.1622776601683795e-2,  0.1,   0.31622776601683795,
     1.0};
 
-/// What is no probability is 1.
+/// Values outside [0, 1] and NaN count as 1.
 double as_probability(double value) { return value >= 0.0 && value <= 1.0 ? value : 1.0; }
 
 struct Counts {

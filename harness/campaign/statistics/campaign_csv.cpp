@@ -22,7 +22,7 @@ std::string field(const std::optional<Value>& value) {
   return value ? field(*value) : "";
 }
 
-/// Its values, separated by commas, as a line.
+/// A line of comma-separated values.
 template <class First, class... Rest>
 std::string line_of(const First& first, const Rest&... rest) {
   std::string line = field(first);

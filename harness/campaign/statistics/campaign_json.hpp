@@ -7,9 +7,8 @@
 
 namespace qsmpc::harness {
 
-/// The text of campaign.json: stable keys, one object, ending in a new line. Numbers that are not
-/// finite are null. Wall-clock values stand under the keys `ocp_ms` alone: everything else is the
-/// same in two runs.
+/// The text of campaign.json: one object with stable keys, ending in a newline. Non-finite numbers
+/// are null. Only the `ocp_ms` keys hold wall-clock values: everything else is reproducible.
 [[nodiscard]] std::string campaign_json(const CampaignStatistics& statistics);
 
 }  // namespace qsmpc::harness

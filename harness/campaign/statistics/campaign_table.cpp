@@ -17,24 +17,24 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kNameWidth = 28;   // of variants
-constexpr std::size_t kTitleLimit = 76;  // of a variant's name in a line of its own
+constexpr std::size_t kTitleLimit = 76;  // of a variant's name on a separate line
 constexpr std::size_t kFullName = 100;
-constexpr std::size_t kNoBoundLimit = 94;  // bytes of the reason in its line
+constexpr std::size_t kNoBoundLimit = 94;  // bytes of the reason on its line
 constexpr std::size_t kOutcomeLimit = 16;
-constexpr std::size_t kDoneWidth = 7;   // of the number of drives
-constexpr std::size_t kRateWidth = 14;  // of the limits of a rate in percent
-constexpr double kSurprising = 0.01;    // a p-value below it is marked
-constexpr std::size_t kMedian = 3;      // of spread_shares
+constexpr std::size_t kDoneWidth = 7;   // column of the number of drives
+constexpr std::size_t kRateWidth = 14;  // column of the limits of a rate in percent
+constexpr double kSurprising = 0.01;    // p-values below this are marked
+constexpr std::size_t kMedian = 3;      // index in spread_shares, as are the next two
 constexpr std::size_t kFifth = 1;
 constexpr std::size_t kNinetyFifth = 5;
 
-/// `text` cut to `width` columns. The mark of a cut text is one column and three bytes.
+/// `text` truncated to `width` columns. The truncation mark takes one column and three bytes.
 std::string cut(const std::string& text, std::size_t width) {
-  return padded(printable(text, width - 2), width);  // the mark and a gap follow
+  return padded(printable(text, width - 2), width);  // leaves room for the mark and a gap
 }
 
 std::string head_name(const char* text) { return fmt::format("     {:<{}}", text, kNameWidth); }
-/// With its number, by which differences name it.
+/// The variant's name with its number, by which differences refer to it.
 std::string name_of(const CampaignStatistics& statistics, std::size_t variant) {
   return fmt::format("{:>4} {}", statistics.variants[variant].id,
                      cut(statistics.variants[variant].name, kNameWidth));
@@ -80,7 +80,7 @@ std::string head(const CampaignStatistics& statistics) {
   return text + "\n" + (stop.empty() ? "" : "  " + stop + "\n");
 }
 
-/// The names that are cut elsewhere.
+/// The full names that are truncated elsewhere.
 std::string long_names(const CampaignStatistics& statistics) {
   std::string text;
   for (const VariantStatistics& variant : statistics.variants) {
@@ -90,7 +90,7 @@ std::string long_names(const CampaignStatistics& statistics) {
   return text.empty() ? text : "\nVariants with long names\n" + text;
 }
 
-/// Two lines a variant: its shares, and their intervals.
+/// Two lines per variant: its shares and their intervals.
 std::string outcome_section(const CampaignStatistics& statistics) {
   const std::vector<ListedOutcome> outcomes = outcomes_of(statistics.variants);
   std::string text =

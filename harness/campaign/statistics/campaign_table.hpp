@@ -1,4 +1,4 @@
-// A campaign's statistics for a terminal.
+// A campaign's statistics as terminal output.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace qsmpc::harness {
 
-/// Lines of at most 110 characters; names that are longer than their column are cut and marked.
+/// Lines of at most 110 characters; names longer than their column are truncated and marked.
 [[nodiscard]] std::string campaign_table(const CampaignStatistics& statistics);
 
 }  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kPieceSize = 1 << 16;  // of a file that is written; a line adds to it
+constexpr std::size_t kPieceSize = 1 << 16;  // bytes per write, which a last line may exceed
 
 }  // namespace
 

@@ -12,13 +12,13 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::uint64_t kBootstrapSeed = 0;  // any, once and for all: its stream is its own
+constexpr std::uint64_t kBootstrapSeed = 0;  // arbitrary but fixed: it has its own random stream
 constexpr int kDrawsPerWord = 4;             // of 16 bits each
 constexpr int kDrawBits = 16;
 
-/// Draws of 16 bits at and above threshold k are weights above k: 65536 P(X ≤ k), rounded, of
-/// X ~ Poisson(1). A weight of 9 or more would have 1.1e-6 of the probability, less than a draw
-/// can tell; what is drawn has the mean 1 and the variance 0.99997.
+/// Thresholds for 16-bit draws: a draw at or above threshold k gives a weight above k. Threshold k
+/// is 65536 P(X ≤ k), rounded, with X ~ Poisson(1). Weights of 9 or more have probability 1.1e-6,
+/// below the resolution of a draw; the weights drawn have mean 1 and variance 0.99997.
 constexpr std::array<std::uint32_t, 8> kThresholds = {24109, 48219, 60273, 64292,
                                                       65296, 65497, 65531, 65535};
 
@@ -98,7 +98,7 @@ RateInterval bootstrap_interval(std::int64_t count, const Eigen::ArrayXd& sums,
   if (count < 2) return {.lower = kNotANumber, .upper = kNotANumber};
   std::vector<double> means;
   for (Eigen::Index r = 0; r < kBootstrapReplicates; ++r) {
-    // Of few pairs, none may be in a replicate: it says nothing.
+    // With few pairs, a replicate may contain none of them; it is skipped.
     if (weights[r] > 0.0) means.push_back(sums[r] / weights[r]);
   }
   return percentile_interval(std::move(means));
@@ -145,7 +145,7 @@ void PairedDifference::add(const EpisodeRow& baseline, const EpisodeRow& variant
     quantity.higher += *after > *before ? 1 : 0;
     quantity.lower += *after < *before ? 1 : 0;
     const double difference = *after - *before;
-    if (difference == 0.0) continue;  // as most of the shares are
+    if (difference == 0.0) continue;  // the usual case for shares
     quantity.sum += difference;
     quantity.sums += difference * weights;
   }

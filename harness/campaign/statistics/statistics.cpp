@@ -14,8 +14,8 @@
 namespace qsmpc::harness {
 namespace {
 
-/// Of a number of a variant's episodes, those that were kept, or where they are too many the
-/// store's.
+/// The spread of a number of a variant's episodes, from the kept values, or from the store if there
+/// are too many to keep.
 Spread spread_of(const StoreReader& store, std::int64_t variant, EpisodeNumber number,
                  const SpreadTally& tally, KeptValues& kept) {
   return tally.result([&](const std::function<void(double)>& visit) {
@@ -27,7 +27,7 @@ Spread spread_of(const StoreReader& store, std::int64_t variant, EpisodeNumber n
   });
 }
 
-/// What is read of a variant.
+/// The data read for one variant.
 struct ReadVariant {
   KeptValues ocp_ms{};
   VariantTally tally{};
@@ -53,13 +53,13 @@ ReadVariant read_variant(const StoreReader& store, std::int64_t variant) {
   return read;
 }
 
-/// As why_no_bound of what was driven, which needs no file any more.
+/// why_no_bound of the stored scenario; needs none of its files.
 std::string no_bound_of(const StoredVariant& variant) {
   try {
     return why_no_bound(
         parse_scenario(variant.scenario_text, {.file = variant.name, .files_must_exist = false}));
   } catch (const InputError& error) {
-    // Of another version, which took what this one refuses.
+    // Stored by another version, which accepted what this one refuses.
     return std::string("whether they hold is not known: ") + error.what();
   }
 }
@@ -95,13 +95,13 @@ VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& v
   return statistics;
 }
 
-/// At how many variants one looks at the same time; each is a statement of the store's.
+/// How many variants are read concurrently; each takes an SQL statement.
 constexpr std::size_t kVariantsAtOnce = 64;
 
 /// Adds the differences of `pairs`, of at most kVariantsAtOnce variants or a single one.
 void add_differences(const StoreReader& store, const std::vector<VariantPair>& pairs,
                      std::vector<VariantDifference>& differences) {
-  std::map<std::size_t, std::size_t> places;  // of variants, among those that are read
+  std::map<std::size_t, std::size_t> places;  // by variant: its index among those read
   for (const VariantPair& pair : pairs) {
     places.try_emplace(pair.baseline, 0);
     places.try_emplace(pair.variant, 0);
@@ -128,8 +128,8 @@ void add_differences(const StoreReader& store, const std::vector<VariantPair>& p
 
 std::vector<VariantDifference> differences_of(const StoreReader& store) {
   std::vector<VariantDifference> differences;
-  std::vector<VariantPair> pairs;  // that are read together
-  std::set<std::size_t> variants;  // of them
+  std::vector<VariantPair> pairs;  // read together
+  std::set<std::size_t> variants;  // in `pairs`
   for (const VariantPair& pair : variant_pairs(store.variants())) {
     variants.insert({pair.baseline, pair.variant});
     if (variants.size() > kVariantsAtOnce) {

@@ -1,5 +1,5 @@
-// What a campaign's episodes say: how often they reach and fail, what differs between variants, and
-// whether the certificates hold. From the rows of the store alone.
+// A campaign's statistics: how often episodes reach the target and fail, how variants differ, and
+// whether the certificates hold. Computed only from the rows of the store.
 //
 //   const CampaignStatistics statistics = campaign_statistics(StoreReader("out/my_campaign"));
 #pragma once
@@ -18,7 +18,7 @@
 
 namespace qsmpc::harness {
 
-/// Means over the seeds that both have done of (variant − baseline).
+/// Means of (variant − baseline) over the seeds that both have done.
 struct VariantDifference {
   VariantPair pair{};
   std::vector<MeanDifference> quantities{};
@@ -33,11 +33,11 @@ struct CampaignStatistics {
   std::vector<CalibrationBin> calibration{};  ///< over all variants
   std::vector<CalibrationBin> published{};
   double p_value = 1.0;                   ///< of all variants' periods
-  std::vector<TradeoffPanel> tradeoff{};  ///< where the campaign asks for risk against cost
+  std::vector<TradeoffPanel> tradeoff{};  ///< if the campaign requests risk against cost
 };
 
-/// Reads every row some times, in a fixed order. Memory grows with the number of variants, and of a
-/// variant at a time with its numbers that are sorted, up to kMostSortedValues of each kind.
+/// Reads every row several times, in a fixed order. Memory grows with the number of variants, plus,
+/// for one variant at a time, the values that are sorted, up to kMostSortedValues of each kind.
 /// Throws what the store throws.
 [[nodiscard]] CampaignStatistics campaign_statistics(const StoreReader& store);
 

@@ -12,7 +12,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// The rate that the rule is about.
+/// The rate to which the rule applies.
 const EpisodeRate& rate_of_rule(const VariantStatistics& variant, const StopCriterion& until) {
   if (until.of == kUnsafeEvent) return variant.unsafe;
   const auto outcome = std::ranges::find(listed_outcomes(), until.of, &ListedOutcome::name);

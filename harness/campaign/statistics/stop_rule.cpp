@@ -47,7 +47,7 @@ bool StopRule::is_wide(std::size_t variant) const {
   return interval.upper - interval.lower > 2.0 * criterion_.rate_halfwidth;
 }
 
-/// Counts the seeds of which every episode is known, and stops at the first that suffices.
+/// Counts the seeds whose episodes are all known, and stops as soon as they suffice.
 void StopRule::take_complete() {
   while (!stops_after_ && !ahead_.empty() && ahead_.begin()->first == complete_) {
     const std::vector<Known>& known = ahead_.begin()->second;
@@ -55,7 +55,7 @@ void StopRule::take_complete() {
     for (std::size_t v = 0; v < known.size(); ++v) events_[v] += known[v] == Known::kEvent ? 1 : 0;
     ahead_.erase(ahead_.begin());
     ++complete_;
-    // What was too wide a seed before most likely still is.
+    // An interval that was too wide one seed ago most likely still is.
     if (is_wide(wide_)) continue;
     wide_ = 0;
     while (wide_ < events_.size() && !is_wide(wide_)) ++wide_;

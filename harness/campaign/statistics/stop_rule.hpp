@@ -1,16 +1,16 @@
-// When a campaign has driven enough seeds.
+// Decides when a campaign has driven enough seeds.
 //
 //   StopRule rule(*campaign.until, campaign.variants.size(), campaign.seeds.size());
 //   rule.add(seed_index, variant_index, is_stop_event(*campaign.until, outcome, unsafe));
 //   if (const auto seeds = rule.stops_after()) …  // the first *seeds of them suffice
 //
-// It stops after the first number n of seeds, in their order, such that every variant's rate of the
-// event over its first n seeds has an interval of at most the half-width that is asked for. What is
-// known of later seeds changes nothing, so that n is the same for any order of additions: for any
-// number of jobs, machines and interruptions.
+// It stops after the smallest number n of seeds, in their order, such that the interval of every
+// variant's event rate over its first n seeds has at most the requested half-width. Later seeds
+// have no effect, so n is the same for any order of additions and thus for any number of jobs,
+// machines and interruptions.
 //
-// n depends on what happened. The intervals are those of a confidence sequence, which hold for all
-// n at once; see docs/theory/stopping.md.
+// Since n depends on the data, the intervals are those of a confidence sequence, which hold for all
+// n simultaneously; see docs/theory/stopping.md.
 #pragma once
 
 #include <cstddef>
@@ -25,30 +25,28 @@
 
 namespace qsmpc::harness {
 
-/// What `until.of` may be: "unsafe" (the true state entered the unsafe set) and the outcomes.
+/// The values of `until.of`: "unsafe" (the true state entered the unsafe set) and the outcomes.
 [[nodiscard]] const std::vector<std::string>& stop_event_names();
 
-/// Whether an episode that ended with `outcome` is counted by `criterion`.
+/// Whether `criterion` counts an episode with this `outcome` and `unsafe` flag.
 [[nodiscard]] bool is_stop_event(const StopCriterion& criterion, const std::string& outcome,
                                  bool unsafe);
 
-/// Not to be used by several threads at once. Memory grows with the number of seeds that are ahead
-/// of the first one that is not complete.
+/// Not thread-safe. Memory grows with the number of seeds ahead of the first incomplete one.
 class StopRule {
  public:
-  /// seeds: at most this many, SeedSet::size(). Throws std::invalid_argument without a variant.
+  /// seeds: their maximum number, SeedSet::size(). Throws std::invalid_argument without variants.
   StopRule(const StopCriterion& criterion, std::size_t variants, std::int64_t seeds);
 
-  /// The episode of a variant (its place in the campaign) with a seed (its place in the seeds).
-  /// Adding one a second time changes nothing. Throws std::invalid_argument on places that there
-  /// are none of.
+  /// Adds the episode of a variant (by its index in the campaign) and seed (by its index in the
+  /// seeds). Adding one twice has no effect. Throws std::invalid_argument if an index is out of
+  /// range.
   void add(std::int64_t seed_index, std::size_t variant, bool event);
 
-  /// How many first seeds suffice, once that is known. It is never known of fewer than all seeds
-  /// where the limit of the seeds comes first.
+  /// How many first seeds suffice, once known; nothing if the seeds run out first.
   [[nodiscard]] std::optional<std::int64_t> stops_after() const { return stops_after_; }
 
-  /// How many first seeds are complete, and count; at most stops_after().
+  /// How many first seeds are complete and counted; at most stops_after().
   [[nodiscard]] std::int64_t complete() const { return complete_; }
   /// The interval of a variant's rate over its complete first seeds.
   [[nodiscard]] RateInterval interval(std::size_t variant) const;
@@ -62,9 +60,9 @@ class StopRule {
   StopCriterion criterion_;
   std::int64_t seeds_;
   std::vector<std::int64_t> events_;                    ///< of the complete seeds, by variant
-  std::map<std::int64_t, std::vector<Known>> ahead_{};  ///< by seed, what is known of each variant
+  std::map<std::int64_t, std::vector<Known>> ahead_{};  ///< by seed: what is known of each variant
   std::int64_t complete_ = 0;
-  std::size_t wide_ = 0;  ///< the variant whose interval was too wide the last time
+  std::size_t wide_ = 0;  ///< the last variant found with too wide an interval
   std::optional<std::int64_t> stops_after_{};
 };
 

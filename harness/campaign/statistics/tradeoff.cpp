@@ -16,7 +16,7 @@ DriveMean mean_of(const BootstrapMean& mean) {
   return {.drives = mean.count(), .mean = mean.mean(), .interval = mean.interval()};
 }
 
-/// Of the variant that is number `place`, `id` in the store.
+/// The point of the variant with index `place` and store id `id`.
 TradeoffPoint point_of(const StoreReader& store, std::size_t place, std::int64_t id) {
   BootstrapMean cost;
   BootstrapMean certified;
@@ -30,7 +30,7 @@ TradeoffPoint point_of(const StoreReader& store, std::size_t place, std::int64_t
   return {.variant = place, .cost = mean_of(cost), .certified = mean_of(certified)};
 }
 
-/// The panel of the scenario and plant of `variant`, which is added where it is new.
+/// The panel for the scenario and plant of `variant`, added if it is new.
 TradeoffPanel& panel_of(const StoredVariant& variant, const std::vector<VariantFamily>& families,
                         std::vector<TradeoffPanel>& panels) {
   const auto found = std::ranges::find_if(panels, [&](const TradeoffPanel& panel) {
@@ -53,7 +53,7 @@ std::vector<TradeoffPanel> tradeoff_panels(const StoreReader& store) {
   for (std::size_t n = 0; n < store.variants().size(); ++n) {
     const StoredVariant& variant = store.variants()[n];
     TradeoffPanel& panel = panel_of(variant, families, panels);
-    std::optional<TradeoffPoint> point;  // of a variant that several families have, read once
+    std::optional<TradeoffPoint> point;  // read once for a variant in several families
     for (std::size_t f = 0; f < families.size(); ++f) {
       if (std::ranges::find(families[f].settings, variant.settings) == families[f].settings.end()) {
         continue;

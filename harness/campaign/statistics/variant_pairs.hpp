@@ -1,4 +1,4 @@
-// Which variants of a campaign are compared with each other.
+// The pairs of a campaign's variants that are compared.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,13 @@
 
 namespace qsmpc::harness {
 
-/// What a variant differs by from its baseline.
+/// In what a variant differs from its baseline.
 enum class DiffersBy { kSettings, kPlant };
 
 /// "settings" or "plant".
 [[nodiscard]] const char* differs_by_name(DiffersBy by);
 
-/// A variant and what it is compared with, as indices.
+/// The indices of a variant and its baseline.
 struct VariantPair {
   std::size_t variant = 0;
   std::size_t baseline = 0;
@@ -23,8 +23,8 @@ struct VariantPair {
   friend bool operator==(const VariantPair&, const VariantPair&) = default;
 };
 
-/// Of each variant: the first one with the same scenario and plant, and the first one with the same
-/// scenario and settings; not where that is the variant itself.
+/// The baselines of each variant: the first variant with the same scenario and plant, and the first
+/// one with the same scenario and settings, except the variant itself.
 [[nodiscard]] std::vector<VariantPair> variant_pairs(const std::vector<StoredVariant>& variants);
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-// What the episodes of one variant say together.
+// The statistics of the episodes of one variant.
 #pragma once
 
 #include <cstdint>
@@ -17,63 +17,66 @@
 
 namespace qsmpc::harness {
 
-/// Why the number of episodes is what it is.
+/// How the number of episodes was determined.
 enum class Counted {
-  kFixed,    ///< it was fixed beforehand
-  kStopped,  ///< it may depend on what happened, as with Campaign::until
+  kFixed,    ///< fixed beforehand
+  kStopped,  ///< may depend on the results, as with Campaign::until
 };
 
-/// How many of the episodes, with 99 % limits: by Clopper and Pearson, or where their number is not
-/// fixed beforehand of a confidence_sequence. Not a number of none.
+/// The share of episodes with an event and its 99 % limits: Clopper–Pearson, or a
+/// confidence_sequence if the number of episodes is not fixed beforehand. The rate is NaN without
+/// episodes.
 struct EpisodeRate {
   std::int64_t events = 0;
   double rate = std::numeric_limits<double>::quiet_NaN();
   RateInterval interval{};
 };
 
-/// Throws as clopper_pearson, except where trials = 0: nothing is known then.
+/// The rate of `events` in `trials`. Throws as clopper_pearson, except for trials = 0, where
+/// nothing is known.
 [[nodiscard]] EpisodeRate episode_rate(std::int64_t events, std::int64_t trials,
                                        Counted counted = Counted::kFixed);
 
-/// Shares of the quantiles that a distribution is drawn by: 0, 1/40, … 1.
+/// The shares of the quantiles used to plot a distribution: 0, 1/40, …, 1.
 [[nodiscard]] const std::vector<double>& curve_shares();
 
-/// A number of episodes.
+/// The distribution of a number over episodes.
 struct Spread {
-  std::int64_t count = 0;  ///< episodes that have one: what mean and standard error are of
-  std::int64_t worst = 0;  ///< episodes that have none and rank as worse than all others
+  std::int64_t count = 0;  ///< episodes that have it; mean and standard error are over these
+  std::int64_t worst = 0;  ///< episodes without it that rank as worse than all others
   double mean = std::numeric_limits<double>::quiet_NaN();
   double standard_error = std::numeric_limits<double>::quiet_NaN();
-  /// Of `count + worst` episodes by spread_shares; infinite where the worst are, not a number
-  /// where there is none.
+  /// The quantiles of `count + worst` episodes at spread_shares; infinite at the worst ones, NaN
+  /// without episodes.
   std::vector<double> quantiles = std::vector<double>(7, std::numeric_limits<double>::quiet_NaN());
-  std::vector<double> curve{};  ///< the same by curve_shares
+  std::vector<double> curve{};  ///< the quantiles at curve_shares
 };
 
-/// An episode as a map shows it.
+/// The path of an episode on a map.
 struct DrivenPath {
   std::string outcome;
   std::vector<PathPoint> points;
 };
 
-/// Of a variant on its map; of more, those that failed come first.
+/// Maximum number of paths of a variant on its map; failures take precedence.
 inline constexpr std::int64_t kMostDrawnPaths = 200;
 
-/// 0, 0.05, 0.25, 0.5, 0.75, 0.95, 1, and what these are called: "min", "p5", "p25", "median", …
+/// 0, 0.05, 0.25, 0.5, 0.75, 0.95, 1, and their names: "min", "p5", "p25", "median", …
 [[nodiscard]] const std::vector<double>& spread_shares();
 [[nodiscard]] const std::vector<std::string>& spread_names();
 
-/// Where the episodes rank that have no number.
+/// How episodes without the number rank.
 enum class WorstIs { kHighest, kLowest, kNotCounted };
 
-/// A spread, from the numbers in any order and then once more ascending.
+/// Computes a Spread from the numbers in any order and then a second time in ascending order.
 class SpreadTally {
  public:
   explicit SpreadTally(WorstIs worst_is) : worst_is_(worst_is) {}
 
   void add(double value) { mean_.add(value); }
   void add_worst() { ++worst_; }
-  /// To be called once, after all of them: each_sorted(visit) calls visit with them ascending.
+  /// To be called once, after all numbers were added: each_sorted(visit) calls visit with them in
+  /// ascending order.
   template <class EachSorted>
   [[nodiscard]] Spread result(const EachSorted& each_sorted) const;
 
@@ -90,8 +93,8 @@ struct VariantStatistics {
   std::string settings{};
   std::string plant{};
   std::string scenario_text{};  ///< resolved, as YAML
-  std::string no_bound{};       ///< why its certificates are no bounds; empty where they are
-  std::int64_t episodes = 0;    ///< asked for
+  std::string no_bound{};       ///< why its certificates are not bounds; empty if they are
+  std::int64_t episodes = 0;    ///< episodes requested
   std::int64_t done = 0;
   std::map<std::string, std::int64_t> outcomes{};
   EpisodeRate reached{};
@@ -101,51 +104,51 @@ struct VariantStatistics {
   EpisodeRate fault{};
   EpisodeRate left_safe_set{};     ///< collision or left_bounds, of earlier versions
   EpisodeRate unsafe{};            ///< the true state entered the unsafe set
-  std::int64_t risk_exceeded = 0;  ///< drives in which a limit of the risk is exceeded
+  std::int64_t risk_exceeded = 0;  ///< drives in which a risk limit is exceeded
   Spread cost{};                   ///< a faulted episode ranks as infinite
   Spread min_clearance{};          ///< m; a faulted episode ranks as −∞
   Spread time_to_target{};         ///< s; of the episodes that reached it only
-  Distribution ocp_ms{};           ///< of all periods; not numbers without one
+  Distribution ocp_ms{};           ///< of all periods; NaN without periods
   std::int64_t deadline_misses = 0;
   std::int64_t periods = 0;
-  std::int64_t unsafe_periods = 0;    ///< that ended in the unsafe set
-  double certified_periods = 0.0;     ///< sum of what was certified for them
-  std::int64_t believed_drives = 0;   ///< in which the controller itself has an estimate
-  std::int64_t believed_periods = 0;  ///< of these drives
-  double believed = 0.0;              ///< sum of what it believed of them
+  std::int64_t unsafe_periods = 0;    ///< periods that ended in the unsafe set
+  double certified_periods = 0.0;     ///< sum of the certified probabilities of the periods
+  std::int64_t believed_drives = 0;   ///< drives in which the controller estimates its risk
+  std::int64_t believed_periods = 0;  ///< periods of these drives
+  double believed = 0.0;              ///< sum of its estimates for these periods
   double p_value = 1.0;               ///< exceedance_p_value of all periods
   std::vector<CalibrationBin> calibration{};
-  std::vector<CalibrationBin> published{};  ///< the same of the thesis's value, which is no bound
+  std::vector<CalibrationBin> published{};  ///< the same for the thesis's value, not a bound
   std::vector<DrivenPath> paths{};          ///< at most kMostDrawnPaths, failures first
-  std::optional<RareStatistics> rare{};     ///< where the campaign looks for rare outcomes
+  std::optional<RareStatistics> rare{};     ///< if the campaign searches for rare outcomes
 
-  /// Shares of the periods; not numbers without one.
+  /// Means over the periods; NaN without periods.
   [[nodiscard]] double unsafe_step_rate() const;
   [[nodiscard]] double certified_step_rate() const;
-  /// Mean of what the controller believed; not a number where it has no estimate.
+  /// Mean of the controller's own risk estimates; NaN if it has none.
   [[nodiscard]] double believed_step_rate() const;
 };
 
-/// An outcome as tables and figures show it.
+/// An outcome as shown in tables and figures.
 struct ListedOutcome {
   std::string name;   ///< as in `VariantStatistics::outcomes`
   std::string title;  ///< a few words
-  std::string verb;   ///< what a drive did that ended so: "52 collided"
+  std::string verb;   ///< what a drive with this outcome did: "52 collided"
   EpisodeRate VariantStatistics::*rate = nullptr;
 };
 
-/// Those that a drive of this version may end with, in their order.
+/// The possible outcomes of drives of this version, in display order.
 [[nodiscard]] const std::vector<ListedOutcome>& listed_outcomes();
-/// The same, and after them those of earlier versions that some of `variants` have.
+/// The same, followed by those outcomes of earlier versions that occur in `variants`.
 [[nodiscard]] std::vector<ListedOutcome> outcomes_of(
     const std::vector<VariantStatistics>& variants);
 
-/// What is counted while a variant's episodes and periods stream by. Memory does not grow.
+/// Streaming counts of a variant's episodes and periods, in constant memory.
 class VariantTally {
  public:
-  /// Episodes by seed.
+  /// Adds an episode; by seed.
   void add(const EpisodeRow& row);
-  /// Their periods; `period` is the number in the episode, from 0.
+  /// Adds a period; `period` is its number in the episode, from 0.
   void add(std::int64_t period, const PeriodRow& row);
 
   [[nodiscard]] const SpreadTally& cost() const { return cost_; }
@@ -154,7 +157,7 @@ class VariantTally {
   [[nodiscard]] const CalibrationTally& calibration() const { return calibration_; }
   [[nodiscard]] const CalibrationTally& published() const { return published_; }
 
-  /// All but the names, `episodes`, the spreads and the distribution of ocp_ms.
+  /// All statistics except the names, `episodes`, the spreads and the distribution of ocp_ms.
   [[nodiscard]] VariantStatistics result(Counted counted = Counted::kFixed) const;
 
  private:

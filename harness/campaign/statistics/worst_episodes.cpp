@@ -12,7 +12,7 @@ namespace {
 
 double or_else(double value, double worst) { return std::isnan(value) ? worst : value; }
 
-/// Less for a worse episode.
+/// Smaller for a worse episode.
 auto rank_of(const EpisodeRow& row) {
   const bool is_grave = row.unsafe || row.outcome == outcome_name(Outcome::kFault);
   return std::tuple(is_grave ? 0 : 1, or_else(row.min_clearance, -kInfinity),
@@ -26,7 +26,7 @@ bool is_worse(const EpisodeRow& one, const EpisodeRow& other) {
 }
 
 std::vector<EpisodeRow> worst_episodes(const StoreReader& store, std::size_t count) {
-  std::vector<EpisodeRow> worst;  // a heap with the least bad one at its front
+  std::vector<EpisodeRow> worst;  // a heap with the best one in front
   for (const StoredVariant& variant : store.variants()) {
     store.for_each_episode(variant.id, [&](const EpisodeRow& row) {
       if (worst.size() == count) {

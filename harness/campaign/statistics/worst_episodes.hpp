@@ -1,4 +1,4 @@
-// The episodes of a campaign that one looks at first.
+// The worst episodes of a campaign, which are the first to inspect.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,14 @@
 
 namespace qsmpc::harness {
 
-/// Whether `one` is worse than `other`: first those whose true state was unsafe or whose simulator
-/// gave up, then by least clearance, then by highest cost; numbers that are none count as worst. Of
-/// equal ones the earlier variant, then the earlier seed: no two episodes of a campaign are equal.
+/// Whether `one` is worse than `other`. Episodes whose true state was unsafe or that ended with a
+/// fault are worst; then the order is by smallest clearance, then by highest cost, with NaN as
+/// worst. Ties are broken by the earlier variant, then the smaller seed, so no two episodes of a
+/// campaign are equal.
 [[nodiscard]] bool is_worse(const EpisodeRow& one, const EpisodeRow& other);
 
-/// The `count` worst episodes of all variants, the worst first, without their periods; fewer where
-/// there are fewer. Memory grows with `count` only. Throws what the store throws.
+/// The `count` worst episodes of all variants, or all if there are fewer, the worst first, without
+/// their periods. Memory grows only with `count`. Throws what the store throws.
 [[nodiscard]] std::vector<EpisodeRow> worst_episodes(const StoreReader& store, std::size_t count);
 
 }  // namespace qsmpc::harness

@@ -27,7 +27,7 @@ std::vector<PeriodRow> period_rows(const EpisodeView& view) {
   return rows;
 }
 
-/// As many digits as the store keeps: those that a drawing can show.
+/// Rounds to the digits that the store keeps, which suffice for a plot.
 double stored(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 std::vector<PathPoint> path_of(const EpisodeView& view) {
@@ -35,7 +35,7 @@ std::vector<PathPoint> path_of(const EpisodeView& view) {
   const std::optional<MapAxes> axes = map_axes(view.system());
   if (!axes || states.rows() <= std::max(axes->x, axes->y)) return {};
   const auto count = static_cast<std::size_t>(states.cols());
-  constexpr std::size_t kSteps = kMostPathPoints - 1;  // the end is a point, too
+  constexpr std::size_t kSteps = kMostPathPoints - 1;  // one point is reserved for the end
   const std::size_t stride = std::max<std::size_t>(1, (count + kSteps - 2) / kSteps);
   std::vector<PathPoint> path;
   const auto add = [&](std::size_t k) {

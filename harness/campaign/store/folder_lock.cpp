@@ -20,7 +20,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr mode_t kFileMode = 0666;  // what the user's umask leaves of it
+constexpr mode_t kFileMode = 0666;  // reduced by the user's umask
 constexpr std::size_t kMostBytes = 512;
 
 std::string path_in(const std::string& folder) { return folder + "/campaign.lock"; }
@@ -30,8 +30,9 @@ std::string path_in(const std::string& folder) { return folder + "/campaign.lock
                 std::generic_category().message(error));
 }
 
-/// The whole file. Open file description locks belong to the descriptor: not, as other locks of
-/// files, to the process, which would lose them by closing any other descriptor of the file.
+/// A lock of the whole file, for open file description locks. These belong to the descriptor; other
+/// file locks belong to the process, which would lose them by closing any other descriptor of the
+/// file.
 struct flock whole_file() {
   struct flock lock = {};
   lock.l_type = F_WRLCK;
@@ -53,7 +54,7 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0' ? name.data() : "?";
 }
 
-/// Says who holds the file from now on.
+/// Writes this process into the file as its holder.
 void write_holder(int descriptor, const std::string& path) {
   const std::time_t now = std::time(nullptr);
   const std::string text = fmt::format("{} {} {}\n", ::getpid(), host_name(), now);
@@ -104,8 +105,8 @@ std::optional<LockHolder> lock_holder(const std::string& folder) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (descriptor < 0 && errno == ENOENT) return std::nullopt;
   if (descriptor < 0) fail(path, "be read", errno);
-  // Asking for the lock is not taking it. Only readers' locks may be asked for with a descriptor
-  // that cannot write; a writer's lock is in the way of those, too.
+  // F_OFD_GETLK only tests for the lock. A read-only descriptor may test only for a read lock, with
+  // which a write lock conflicts as well.
   struct flock lock = whole_file();
   lock.l_type = F_RDLCK;
   const int status = ::fcntl(descriptor, F_OFD_GETLK, &lock);

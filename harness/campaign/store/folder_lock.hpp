@@ -1,4 +1,4 @@
-// One process at a time works in a campaign's folder.
+// Ensures that only one process at a time works in a campaign's folder.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,9 @@
 
 namespace qsmpc::harness {
 
-/// Who holds a folder.
+/// The process that holds a folder.
 struct LockHolder {
-  long process = 0;        ///< its number; 0 where it has not said yet
+  long process = 0;        ///< its pid; 0 if not yet written
   std::string host;        ///< the machine that it runs on
   std::int64_t since = 0;  ///< s since 1970-01-01 00:00 UTC
 };
@@ -17,12 +17,12 @@ struct LockHolder {
 /// "YYYY-MM-DD HH:MM:SS UTC".
 [[nodiscard]] std::string utc_text(std::int64_t seconds);
 
-/// Holds `FOLDER/campaign.lock` as long as it lives. The system lets go of it when the process
-/// ends, however it ends; the file stays, and means nothing by itself.
+/// Holds a lock on `FOLDER/campaign.lock` during its lifetime. The system releases the lock when
+/// the process ends, however it ends; the file remains, and its existence alone means nothing.
 class FolderLock {
  public:
-  /// Takes the folder, which must exist. Throws IoError when another process has it, saying which,
-  /// and when the file cannot be made or locked.
+  /// Locks the folder, which must exist. Throws IoError if another process holds it, naming that
+  /// process, or if the file cannot be created or locked.
   explicit FolderLock(const std::string& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
@@ -32,8 +32,8 @@ class FolderLock {
   int descriptor_ = -1;
 };
 
-/// Who holds `folder` now, or nothing. Takes nothing itself. Throws IoError when the file is there
-/// and cannot be read.
+/// The current holder of `folder`, or nothing. Does not take the lock. Throws IoError if the file
+/// exists and cannot be read.
 [[nodiscard]] std::optional<LockHolder> lock_holder(const std::string& folder);
 
 }  // namespace qsmpc::harness

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kJoinedCacheSize = 65'536;  // KiB
 
-/// A path as a URI that opens the file for reading only.
+/// A URI that opens the file at `path` read-only.
 std::string read_only_uri(const std::string& path) {
   std::string uri = "file:";
   for (const char c : path) {
@@ -28,7 +28,7 @@ std::string read_only_uri(const std::string& path) {
   return uri + "?mode=ro";
 }
 
-/// Columns of a table but those named in `without`.
+/// The columns of a table except those in `without`.
 std::vector<std::string> columns_of(SQLite::Database& database, const std::string& table,
                                     std::initializer_list<std::string> without) {
   SQLite::Statement info(database, "SELECT name FROM pragma_table_info(?)");
@@ -41,7 +41,7 @@ std::vector<std::string> columns_of(SQLite::Database& database, const std::strin
   return columns;
 }
 
-/// Detaches the store that is attached, however its work ends.
+/// Attaches a store, and detaches it on destruction.
 class Attached {
  public:
   Attached(SQLite::Database& database, const std::string& folder) : database_(database) {
@@ -63,7 +63,8 @@ JoinedStore::JoinedStore(const std::string& path, const StoredCampaign& campaign
                          const std::vector<StoredVariant>& variants)
     : database_(path, SQLite::OPEN_READWRITE | SQLite::OPEN_URI | SQLite::OPEN_NOMUTEX,
                 kStorePatience) {
-  // Until it has its name, nobody needs it: nothing is kept with which to undo what is done to it.
+  // A partly written store is useless and has no final name yet, so neither a rollback journal nor
+  // synchronous writes are needed.
   database_.exec("PRAGMA page_size = 16384; PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF");
   database_.exec(fmt::format("PRAGMA cache_size = -{}", kJoinedCacheSize));
   migrate(database_, 0, store_migrations());
@@ -95,7 +96,7 @@ JoinedStore::Numbers JoinedStore::numbers() {
   return variants;
 }
 
-/// The first of `variants` for which `sql` has a row, and the seed that is in it.
+/// The first of `variants` for which `sql` returns a row, and the seed in that row.
 std::optional<JoinedStore::Found> JoinedStore::first_row(const std::string& sql,
                                                          const Numbers& variants) {
   SQLite::Statement statement(database_, sql);
@@ -126,11 +127,11 @@ void JoinedStore::refuse_duplicates(const Numbers& variants, const std::string& 
                     .expected = "each episode once"});
 }
 
-/// Refuses an episode of which a store before this one has another one.
+/// Refuses an episode that differs from the same episode of an earlier store.
 void JoinedStore::refuse_contradictions(const Numbers& variants, const std::string& folder) {
   for (const char* table : kEpisodeTables) {
     if (is_timing(table)) continue;
-    // The folder of a trace has the variant's number there.
+    // The name of a trace's folder contains the variant's number, which differs between stores.
     const std::vector<std::string> columns =
         columns_of(database_, table, {"variant", "seed", "trace"});
     const std::optional<Found> found = first_row(

@@ -1,4 +1,4 @@
-// A store that the rows of others are added to, while nobody else sees it.
+// A private store into which the rows of other stores are merged.
 #pragma once
 
 #include <cstdint>
@@ -14,22 +14,22 @@
 
 namespace qsmpc::harness {
 
-/// Variants may be numbered differently in each of the stores. Throws SQLite::Exception where a
-/// store cannot be read or written.
+/// Variants may be numbered differently in each of the stores. Throws SQLite::Exception if a store
+/// cannot be read or written.
 class JoinedStore {
  public:
-  /// Makes the store of `campaign` in the empty file at `path`.
+  /// Creates the store of `campaign` in the empty file at `path`.
   JoinedStore(const std::string& path, const StoredCampaign& campaign,
               const std::vector<StoredVariant>& variants);
 
   [[nodiscard]] SQLite::Database& database() { return database_; }
 
-  /// Adds the rows of the store in `folder`, of the same campaign. Throws InputError where it holds
-  /// an episode that is there already, unless `policy` allows that and both agree.
+  /// Adds the rows of the store in `folder`, of the same campaign. Throws InputError if it holds an
+  /// episode that was already added, unless `policy` allows duplicates and the two agree.
   void add(const std::string& folder, const MergePolicy& policy);
 
  private:
-  /// A variant's number there and here.
+  /// The numbers of each variant in the added store and in this one.
   using Numbers = std::vector<std::pair<std::int64_t, std::int64_t>>;
   struct Found {
     std::string variant;

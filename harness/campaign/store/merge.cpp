@@ -31,7 +31,7 @@ std::string shard_text(const Shard& shard) {
   return fmt::format("shard {}/{}", shard.index, shard.count);
 }
 
-/// "penalties: w2, w20; limits: r001", "none" without a family.
+/// "penalties: w2, w20; limits: r001", "none" without families.
 std::string families_text(const std::vector<VariantFamily>& families) {
   std::string text;
   for (const VariantFamily& family : families) {
@@ -41,14 +41,14 @@ std::string families_text(const std::vector<VariantFamily>& families) {
   return text.empty() ? "none" : text;
 }
 
-/// What is known of the stores before they are joined.
+/// The properties of the stores to merge.
 struct Joined {
   StoredCampaign campaign;
   std::vector<StoredVariant> variants;
   std::vector<Shard> shards;  ///< of each folder
 };
 
-/// Refuses `other` unless it is of the campaign that `first` is of.
+/// Refuses `other` unless it is of the same campaign as `first`.
 void require_same(const Joined& first, const StoreReader& other, const std::string& folder) {
   const auto require = [&](const std::string& key, const std::string& found,
                            const std::string& expected) {
@@ -82,7 +82,7 @@ void require_same(const Joined& first, const StoreReader& other, const std::stri
   }
 }
 
-/// Looks at every store, one after the other.
+/// Opens the stores one after the other and checks that they are of the same campaign.
 Joined joined(const std::vector<std::string>& folders) {
   if (folders.empty()) throw InputError({.found = "no folder", .expected = "those of the shards"});
   Joined stores;
@@ -99,7 +99,7 @@ Joined joined(const std::vector<std::string>& folders) {
   return stores;
 }
 
-/// Refuses folders that are not each shard once.
+/// Refuses folders that are not each of the shards exactly once.
 void require_all_shards(const std::vector<std::string>& folders, const Joined& stores) {
   const std::int64_t count = stores.campaign.shard.count;
   std::map<std::int64_t, std::string> folder_of;
@@ -129,8 +129,8 @@ void require_one_shard(const std::vector<std::string>& folders, const Joined& st
   }
 }
 
-/// Refuses seeds of a variant that the campaign does not ask for, and unless `incomplete` those
-/// that are missing.
+/// Refuses seeds of a variant that are not in the campaign, and unless `incomplete` also missing
+/// seeds.
 void require_seeds(SQLite::Database& database, const StoredVariant& variant,
                    const std::vector<std::uint64_t>& listed, const SeedSet& seeds,
                    bool incomplete) {
@@ -164,8 +164,8 @@ void require_seeds(SQLite::Database& database, const StoredVariant& variant,
   if (seed) refuse(fmt::format("an episode with the foreign seed {}", *seed));
 }
 
-/// Puts all of a store that is to be replaced into its one file: what is left of its log would be
-/// taken for the new one's.
+/// Folds the log of a store that will be replaced into its file: a leftover log would be taken for
+/// the new store's.
 void fold_store(const std::string& path) {
   with_store_errors(path, [&] {
     SQLite::Database database(path, SQLite::OPEN_READWRITE, kStorePatience);
@@ -173,7 +173,7 @@ void fold_store(const std::string& path) {
   });
 }
 
-/// Copies the file `name` of the episode that is in `from`, where there is one.
+/// Copies the file `name` of an episode from folder `from` to folder `to`.
 void copy_episode_file(const std::string& from, const std::string& to, const std::string& name) {
   const std::string source = from + "/" + name;
   PendingFile file(to + "/" + name);
@@ -183,7 +183,8 @@ void copy_episode_file(const std::string& from, const std::string& to, const std
   file.commit();
 }
 
-/// Copies the traces that the store in `folder` keeps, unless they are there; returns how many.
+/// Copies the kept traces of the store in `folder` unless they exist in `out`; returns how many
+/// were copied.
 std::int64_t copy_traces(const std::string& folder, const std::string& out) {
   const StoreReader store(folder);
   std::int64_t copied = 0;
@@ -202,8 +203,8 @@ std::int64_t copy_traces(const std::string& folder, const std::string& out) {
   return copied;
 }
 
-/// Refuses a store that holds an episode which is not as it was written; of the folders it came
-/// from, the one that is damaged.
+/// Refuses a store with an episode that fails its checksum; names the damaged one of the source
+/// folders.
 void refuse_damage(SQLite::Database& database, const std::vector<std::string>& folders,
                    const std::string& path) {
   const std::optional<StoredEpisode> damaged = damaged_episode(database);
@@ -230,7 +231,7 @@ std::int64_t write_store(const std::string& path, const std::vector<std::string>
   return store.database().execAndGet("SELECT count(*) FROM episode").getInt64();
 }
 
-/// Joins stores that may be joined as `campaign`.
+/// Merges compatible stores as `campaign`.
 MergeResult merge(const std::vector<std::string>& folders, const std::string& out,
                   const Joined& stores, const StoredCampaign& campaign, const MergePolicy& policy) {
   make_output_folder(out);

@@ -1,4 +1,4 @@
-// Stores of one campaign that was driven in several places, joined into one.
+// Merges the stores of a campaign that was driven in several places.
 #pragma once
 
 #include <cstdint>
@@ -8,39 +8,39 @@
 namespace qsmpc::harness {
 
 struct MergeResult {
-  std::int64_t episodes = 0;  ///< that the joined store has
+  std::int64_t episodes = 0;  ///< episodes in the merged store
   std::int64_t asked = 0;     ///< episodes of the campaign
-  std::int64_t traces = 0;    ///< that were copied
+  std::int64_t traces = 0;    ///< traces copied
 };
 
-/// What stores that are joined may be.
+/// What is allowed of the stores to merge.
 struct MergePolicy {
-  /// Whether several of them may hold the same episode. It is taken once, from the first folder
-  /// that has it; the others must agree with it in all but timings.
+  /// Whether several of them may contain the same episode. It is taken once, from the first folder
+  /// that has it; the others must agree with it except in timings.
   bool duplicates = false;
   /// Whether episodes of the campaign may be missing from all of them.
   bool incomplete = false;
-  /// Whether a store that is in `out` already is replaced.
+  /// Whether an existing store in `out` is replaced.
   bool replace = false;
 };
 
-/// Joins the stores in `folders`, and the traces that they keep, in the folder `out`, which is made
-/// if need be. They are of the same campaign and the same shard of it, and stay as they are; any
-/// number of them can be joined, as one is open at a time. With `policy.replace`, `out` may be one
-/// of them. Every episode is compared with its
-/// checksum on the way. The store appears under its name when all is in it and on the disk.
+/// Merges the stores in `folders` and their kept traces into the folder `out`, which is created if
+/// necessary. They must be of the same campaign and the same shard, and are not modified; their
+/// number is unlimited, as only one is open at a time. With `policy.replace`, `out` may be one of
+/// them. Every episode is verified against its checksum. The store gets its final name only when it
+/// is complete and on disk.
 ///
-/// Throws InputError, and leaves `out` without a new store, where the folders are of different
-/// campaigns, shards, scenarios, vehicles or versions, or hold episodes that the campaign does not
-/// ask for or that `policy` does not allow; it names what is missing, double or foreign. Throws
-/// IoError where something is damaged or cannot be read or written, or another process works in
-/// `out`.
+/// Throws InputError, and leaves `out` without a new store, if the folders are of different
+/// campaigns, shards, scenarios, vehicles or versions, or if they contain episodes that are not in
+/// the campaign, or duplicates or gaps that `policy` does not allow; the error names what is
+/// missing, duplicated or foreign. Throws IoError if something is damaged or cannot be read or
+/// written, or if another process works in `out`.
 MergeResult merge_stores(const std::vector<std::string>& folders, const std::string& out,
                          const MergePolicy& policy);
 
-/// The same of the stores of all shards of a campaign, each of which is there once, and which hold
-/// each episode of the campaign exactly once. `out` holds no campaign yet. What is joined is the
-/// whole campaign.
+/// The same for the stores of all shards of a campaign, each given once, which together must
+/// contain each episode of the campaign exactly once. `out` must not contain a campaign yet. The
+/// result is the whole campaign.
 MergeResult merge_shards(const std::vector<std::string>& folders, const std::string& out);
 
 }  // namespace qsmpc::harness

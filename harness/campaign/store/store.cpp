@@ -18,10 +18,10 @@
 namespace qsmpc::harness {
 namespace {
 
-// The name of SQLite's access to files that asks the system for no lock.
+// The SQLite VFS without file locks.
 constexpr const char* kNoLocks = "unix-none";
 
-/// The first thing that differs, as found in the store and as expected by the campaign.
+/// The first difference, with the value in the store and the one expected by the campaign.
 struct Difference {
   std::string key;
   std::string found;
@@ -96,7 +96,7 @@ std::optional<Difference> difference_of(const CampaignIdentity& stored,
   return difference ? difference : difference_of(stored.variants, asked.variants);
 }
 
-/// Whether a seed, as it is stored, is one of a shard's.
+/// The set of a shard's seeds, as stored.
 class ShardSeeds {
  public:
   ShardSeeds(const SeedSet& seeds, const Shard& shard) : seeds_(seeds), shard_(shard) {
@@ -167,16 +167,16 @@ struct Store::Implementation {
       : path(std::move(file)),
         database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kStorePatience,
                  use == StoreUse::kAlone ? kNoLocks : "") {
-    // Before the log is used for the first time: its index then stays in memory of this process.
+    // Must precede the first use of the log, so that its index stays in this process's memory.
     if (use == StoreUse::kAlone) database.exec("PRAGMA locking_mode = EXCLUSIVE");
-    // Found out before anything is written into a file that is not ours.
+    // Checked before anything is written, in case the file is not one of ours.
     const int schema = schema_of(database, path);
     refuse_newer(schema, path);
-    // The log makes a commit one write at the end of a file, and lets others read meanwhile; each
-    // commit waits until it is on the disk.
+    // With the log, a commit is a single append, and others can read meanwhile; each commit waits
+    // until it is on disk.
     database.exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
     migrate(database, schema, store_migrations());
-    // The room that the former rows of periods took is given back.
+    // Frees the space of the former per-period rows.
     if (schema > 0 && schema < kPeriodsSchemaNumber) database.exec("VACUUM");
   }
 
@@ -193,7 +193,7 @@ struct Store::Implementation {
     transaction.commit();
   }
 
-  /// Notes in `update` and removes the episodes of a variant for which `goes` holds.
+  /// Removes the episodes of a variant whose seeds satisfy `goes`, and records them in `update`.
   template <class Goes>
   void drop(std::int64_t variant, const Goes& goes, StoreUpdate& update) {
     std::vector<std::int64_t> seeds;
@@ -214,7 +214,7 @@ struct Store::Implementation {
     update.dropped += std::ssize(seeds);
   }
 
-  /// Makes the store that of another campaign, keeping what both ask for.
+  /// Turns the store into that of another campaign, keeping the episodes that both have.
   void change(const StoredCampaign& campaign, const std::vector<StoredVariant>& asked,
               const SeedSet& seeds) {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
@@ -250,7 +250,7 @@ struct Store::Implementation {
   SQLite::Database database;
   std::mutex mutex{};
   StoreUpdate changes{};
-  std::optional<EpisodeWriter> writer{};  ///< once an episode is added
+  std::optional<EpisodeWriter> writer{};  ///< created when the first episode is added
   std::vector<std::int64_t> ids{};
 };
 
@@ -374,12 +374,12 @@ void Store::fold() {
   const std::lock_guard lock(implementation_->mutex);
   with_store_errors(implementation_->path, [&] {
     SQLite::Database& database = implementation_->database;
-    database.setBusyTimeout(0);  // nobody is waited for
+    database.setBusyTimeout(0);  // do not wait for readers
     try {
       (void)database.execAndGet("PRAGMA wal_checkpoint(TRUNCATE)");
       database.exec("PRAGMA journal_mode = DELETE");
     } catch (const SQLite::Exception& error) {
-      // Others read it: the log stays beside the file until the last of them is gone.
+      // The store has readers: the log stays until the last of them is gone.
       constexpr int kBusy = 5;
       constexpr int kLocked = 6;
       if (error.getErrorCode() != kBusy && error.getErrorCode() != kLocked) throw;

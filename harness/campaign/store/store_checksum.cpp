@@ -16,8 +16,8 @@
 namespace qsmpc::harness {
 namespace {
 
-// Columns by name. Those that later schemas add are in queries of their own, which count only where
-// they have a row: checksums that were made before stay what they are.
+// Columns are listed by name. Those added by later schemas are in separate queries that contribute
+// only if they return a row, so that older checksums remain valid.
 constexpr const char* kEpisodeQuery =
     "SELECT outcome, fault, steps, time_to_target, unsafe, min_clearance, cost, next_step_max, "
     "next_step_sum, horizon_max, thesis_max, iterations_median, fallbacks, trace, version, "
@@ -38,7 +38,7 @@ constexpr const char* kRareQuery =
     "extinct, below_floor, plain_unsafe, plain_periods, plain_faults, certified, found "
     "FROM rare_run WHERE variant = ? AND seed = ?";
 
-// What SQLite calls the types of values.
+// SQLite's type codes.
 constexpr std::uint64_t kIntegerType = 1;
 constexpr std::uint64_t kRealType = 2;
 constexpr std::uint64_t kNullType = 5;
@@ -103,7 +103,7 @@ struct EpisodeChecksums::Implementation {
   }
 
  private:
-  /// How many rows there were.
+  /// Hashes all rows of `statement`; returns their number.
   static std::uint64_t add_rows(SQLite::Statement& statement, Hash& hash) {
     std::uint64_t rows = 0;
     for (; statement.executeStep(); ++rows) {

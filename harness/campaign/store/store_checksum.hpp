@@ -1,5 +1,5 @@
-// Checksums of a campaign's episodes: what a disk or a cable has changed in a store must not go
-// into statistics unseen.
+// Checksums of a campaign's episodes, so that data corrupted on disk or in transit cannot enter
+// statistics unnoticed.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@ class Database;
 
 namespace qsmpc::harness {
 
-/// Checksums of episodes of one store: of all numbers and texts of their rows but the variant's,
-/// which differs between shards. Periods count as the rows, one a period, that they were in earlier
-/// schemas.
+/// Computes checksums of episodes of one store, over all numbers and texts of their rows except the
+/// variant's number, which differs between shards. Periods are hashed as one row per period, as in
+/// earlier schemas.
 class EpisodeChecksums {
  public:
   explicit EpisodeChecksums(SQLite::Database& database);
@@ -23,7 +23,7 @@ class EpisodeChecksums {
   EpisodeChecksums(const EpisodeChecksums&) = delete;
   EpisodeChecksums& operator=(const EpisodeChecksums&) = delete;
 
-  /// Of the rows that are there now. Throws SQLite::Exception.
+  /// The checksum of the episode's current rows. Throws SQLite::Exception.
   [[nodiscard]] std::int64_t of(std::int64_t variant, std::int64_t seed);
 
  private:
@@ -31,14 +31,14 @@ class EpisodeChecksums {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// An episode, as the store numbers it.
+/// The store's key of an episode.
 struct StoredEpisode {
   std::int64_t variant = 0;
   std::int64_t seed = 0;
 };
 
-/// The first episode whose rows are not those that its checksum was made of, or are gone; nothing
-/// where all are sound. Episodes of earlier versions have none and count as sound.
+/// The first episode whose rows do not match its checksum or are missing; nothing if all are
+/// intact. Episodes of earlier versions have no checksum and count as intact.
 [[nodiscard]] std::optional<StoredEpisode> damaged_episode(SQLite::Database& database);
 
 }  // namespace qsmpc::harness

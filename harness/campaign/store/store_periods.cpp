@@ -15,7 +15,7 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr std::string_view kNull = "null";
-constexpr const char* kInfinite = "9e999";  // beyond every double, as SQLite and this file read it
+constexpr const char* kInfinite = "9e999";  // read as infinity by SQLite and this file
 
 void add_number(double value, std::string& text) {
   if (std::isnan(value)) {
@@ -28,12 +28,12 @@ void add_number(double value, std::string& text) {
   }
 }
 
-/// Reads what this file writes.
+/// Parses the texts that this file writes.
 class NumberReader {
  public:
   explicit NumberReader(std::string_view text) : text_(text) {}
 
-  /// Whether the next character is `c`, which is then passed.
+  /// Consumes the next character if it is `c`; returns whether it was.
   bool pass(char c) {
     if (text_.empty() || text_.front() != c) return false;
     text_.remove_prefix(1);

@@ -1,5 +1,5 @@
-// The periods of an episode as the store keeps them: one row an episode, with JSON that SQLite
-// reads (json_each), for a row a period would take most of the time of a large campaign.
+// The stored form of an episode's periods: one row per episode, with JSON that SQL can read
+// (json_each). One row per period would take most of the time of a large campaign.
 #pragma once
 
 #include <cstdint>
@@ -16,24 +16,23 @@ class Database;
 
 namespace qsmpc::harness {
 
-/// "[[certified,published],…]" by period, with as many digits as read back exactly; null for what
-/// is not a number.
+/// "[[certified,published],…]" by period, with enough digits to read back exactly; null for NaN.
 [[nodiscard]] std::string certificates_text(const std::vector<PeriodRow>& periods);
-/// "[12,13]": the periods that ended unsafe, by number.
+/// "[12,13]": the numbers of the periods that ended unsafe.
 [[nodiscard]] std::string unsafe_text(const std::vector<PeriodRow>& periods);
 /// "[1.5,2.25]" by period.
 [[nodiscard]] std::string ocp_ms_text(const std::vector<PeriodRow>& periods);
 
-/// The periods in `certificates` and `unsafe`, without ocp_ms, into `periods`, which is
-/// overwritten. Throws SQLite::Exception on texts that are none of the above.
+/// Reads the periods in `certificates` and `unsafe`, without ocp_ms, into `periods`, which is
+/// overwritten. Throws SQLite::Exception on texts not in the above formats.
 void read_periods(std::string_view certificates, std::string_view unsafe,
                   std::vector<PeriodRow>& periods);
-/// The numbers in an ocp_ms_text, into `values`, which is overwritten. Throws SQLite::Exception on
-/// another text.
+/// Reads the numbers of an ocp_ms_text into `values`, which is overwritten. Throws
+/// SQLite::Exception on any other text.
 void read_ocp_ms(std::string_view text, std::vector<double>& values);
 
-/// Turns the rows of earlier schemas, a period each, in the tables `old_period` and
-/// `old_period_timing`, into rows of `episode_periods` and `episode_ocp_ms`.
+/// Converts the per-period rows of earlier schemas, in the tables `old_period` and
+/// `old_period_timing`, to rows of `episode_periods` and `episode_ocp_ms`.
 void gather_periods(SQLite::Database& database);
 
 }  // namespace qsmpc::harness

@@ -52,7 +52,7 @@ std::string episodes_by_seed() {
          " WHERE e.variant = ? ORDER BY e.seed";
 }
 
-/// The episodes of a variant, one after the other.
+/// Iterates over the episodes of a variant by seed.
 class EpisodeCursor {
  public:
   EpisodeCursor(SQLite::Database& database, std::int64_t variant)
@@ -61,7 +61,7 @@ class EpisodeCursor {
     next();
   }
 
-  /// Nothing after the last one.
+  /// nullptr after the last one.
   [[nodiscard]] const EpisodeRow* row() const { return is_there_ ? &row_ : nullptr; }
   [[nodiscard]] const EpisodeRow* row_of(std::uint64_t seed) const {
     return is_there_ && row_.seed == seed ? &row_ : nullptr;
@@ -79,7 +79,7 @@ class EpisodeCursor {
 
 SQLite::Database open_database(const std::string& path) {
   SQLite::Database database(path, SQLite::OPEN_READONLY | SQLite::OPEN_NOMUTEX, kStorePatience);
-  // The first read takes the state of the store that all later ones see.
+  // All reads in the transaction see the snapshot taken by the first one.
   database.exec("BEGIN");
   return database;
 }
@@ -102,7 +102,7 @@ struct StoreReader::Implementation {
     variants = read_variants(database);
   }
 
-  /// Runs `visit` on every row of `sql`, whose parameters are `values`.
+  /// Calls `visit` on every row of `sql` with the parameters `values`.
   void each(const std::string& sql, const std::vector<std::int64_t>& values,
             const std::function<void(SQLite::Statement&)>& visit) {
     with_store_errors(path, [&] {
@@ -153,7 +153,7 @@ std::map<std::string, std::int64_t> StoreReader::outcomes() const {
 
 std::int64_t StoreReader::finished_since(double time) const {
   std::int64_t count = 0;
-  // Times are compared as numbers: the parameter is one, too.
+  // finished_at is compared as a number, so the time is inserted as a literal.
   implementation_->each(
       fmt::format("SELECT count(*) FROM episode_timing WHERE finished_at >= {:.6f}", time), {},
       [&](SQLite::Statement& row) { count = row.getColumn(0).getInt64(); });

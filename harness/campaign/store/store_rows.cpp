@@ -17,7 +17,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// Nothing in SQLite is not a number.
+// SQLite has no NaN: it is stored as NULL.
 void bind_number(SQLite::Statement& statement, int index, double value) {
   if (std::isnan(value)) {
     statement.bind(index);
@@ -35,7 +35,7 @@ void run(SQLite::Statement& statement) {
   statement.reset();
 }
 
-/// As JSON, which SQLite reads (json_each).
+/// JSON, so that SQL can read it (json_each).
 std::string path_text(const std::vector<PathPoint>& path) {
   std::string text = "[";
   for (const PathPoint& point : path) {
@@ -199,7 +199,7 @@ struct EpisodeWriter::Implementation {
         checksums(database) {}
 
   static void begin(SQLite::Statement& statement, const EpisodeRow& row) {
-    statement.reset();  // after one that failed
+    statement.reset();  // in case the previous execution failed
     statement.bind(1, row.variant);
     statement.bind(2, stored_seed(row.seed));
   }

@@ -13,11 +13,11 @@
 namespace qsmpc::harness {
 namespace {
 
-// "qsmc" in the file's header says whose tables these are.
+// "qsmc", which identifies our files in the SQLite header.
 constexpr std::int32_t kApplicationId = 0x71736D63;
 
-// A column that may be NULL holds a number that need not exist. Timings have tables of their own:
-// everything else depends on scenarios and seeds alone.
+// Nullable columns hold numbers that need not exist. Timings are in separate tables: everything
+// else depends only on scenarios and seeds.
 constexpr const char* kFirstSchema = R"sql(
 CREATE TABLE campaign (
   id INTEGER PRIMARY KEY CHECK (id = 1),
@@ -85,7 +85,7 @@ CREATE TABLE period_timing (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-// An update may keep episodes of an older program: each says which one drove it.
+// An update may keep episodes of an older program, so each records the version that drove it.
 constexpr const char* kSecondSchema = R"sql(
 ALTER TABLE episode ADD COLUMN version TEXT NOT NULL DEFAULT '';
 UPDATE episode SET version = (SELECT version FROM campaign);
@@ -123,15 +123,15 @@ CREATE TABLE episode_checksum (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-// Rows of earlier versions do not say what the controller itself believed.
+// Rows of earlier versions do not contain the controller's own risk estimates.
 constexpr const char* kBelievedSchema = R"sql(
 ALTER TABLE episode ADD COLUMN believed_max REAL;
 ALTER TABLE episode ADD COLUMN believed_sum REAL;
 )sql";
 
-// A row an episode instead of a row a period: as much room, and a fraction of the time to read.
-// These rows are large, for which tables with a rowid are made. Whoever read the former tables by
-// SQL finds them as views.
+// One row per episode instead of one per period: the same space, and a fraction of the time to
+// read. The tables have a rowid, which suits such large rows. Views replace the former tables for
+// SQL users.
 constexpr const char* kPeriodsSchema = R"sql(
 ALTER TABLE period RENAME TO old_period;
 ALTER TABLE period_timing RENAME TO old_period_timing;
@@ -173,7 +173,7 @@ CREATE TABLE stop_rule (
 ) STRICT;
 )sql";
 
-// Campaigns of earlier versions did not look for rare outcomes.
+// Campaigns of earlier versions did not search for rare outcomes.
 constexpr const char* kRareSchema = R"sql(
 CREATE TABLE rare (
   id INTEGER PRIMARY KEY CHECK (id = 1),
@@ -254,7 +254,7 @@ void with_store_errors(const std::string& path, const std::function<void()>& wor
   try {
     work();
   } catch (const SQLite::Exception& error) {
-    // Without a code it is this program that found something wrong, in rows that SQLite could read.
+    // A negative code means that this program detected the damage, in rows that SQLite could read.
     if (error.getErrorCode() < 0) {
       throw IoError(printable(path, 400) + ": damaged: " + error.what());
     }

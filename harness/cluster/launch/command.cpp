@@ -42,7 +42,7 @@ std::string command_name(const std::vector<std::string>& words) {
   return printable(shell_command(words), kWordsInErrors);
 }
 
-/// Reads what is there; closes at the end.
+/// Reads the available bytes; closes the descriptor at end of file.
 void read_available(Descriptor& from, std::string& text) {
   std::array<char, 4096> chunk{};
   const ssize_t count = ::read(from.get(), chunk.data(), chunk.size());
@@ -50,7 +50,7 @@ void read_available(Descriptor& from, std::string& text) {
   if (count == 0 || (count < 0 && errno != EINTR)) from.close();
 }
 
-/// Returns whether both had been closed by `until`.
+/// Reads both until they are closed or `until`; returns whether both were closed.
 bool read_both(Descriptor& output, Descriptor& errors, CommandResult& result,
                Clock::time_point until) {
   while (output.is_open() || errors.is_open()) {

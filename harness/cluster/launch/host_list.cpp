@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMostPorts = 65535;
 
-/// Where a host stands, for the error about it.
+/// The place of a host, for error messages.
 struct HostPlace {
   std::string file{};
   int line = 0;
@@ -40,7 +40,7 @@ std::string_view trimmed_host(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
 }
 
-/// What ssh may be given as a login: never an option, nothing that a shell reads.
+/// Whether `text` is safe to pass to ssh as a login: not an option, no shell metacharacters.
 bool is_login(std::string_view text) {
   const auto is_fine = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -62,7 +62,7 @@ LaunchHost parse_host(const HostPlace& place, std::string_view text) {
     host.tasks = *tasks;
     rest.remove_prefix(end + 1);
   }
-  // One colon alone is before a port; more are of an IPv6 address.
+  // A single colon precedes a port; several belong to an IPv6 address.
   if (const std::size_t colon = rest.find(':');
       rest.size() > 1 && colon != std::string_view::npos && colon == rest.rfind(':')) {
     const auto port = parse_integer<int>(rest.substr(colon + 1));

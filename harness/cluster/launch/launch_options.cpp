@@ -34,7 +34,7 @@ std::string hosts_text(const LaunchOptions& options) {
   return options.on.substr(kSshPrefix.size());
 }
 
-/// An option, and the kinds that have it.
+/// An option and the kinds that have it.
 struct KindOption {
   const char* name;
   std::string value;  ///< empty: not given
@@ -70,7 +70,7 @@ void check_number(const char* option, int value) {
   refuse_option(option, std::to_string(value), fmt::format("1 … {}", kMostTasks));
 }
 
-/// What goes on a line "#SBATCH --NAME=VALUE" as it is.
+/// Refuses values that cannot be inserted verbatim into a line "#SBATCH --NAME=VALUE".
 void check_slurm_word(const char* option, const std::string& value) {
   static const std::regex names("[A-Za-z0-9_.:@+-]+(,[A-Za-z0-9_.:@+-]+)*");
   if (!value.empty() && !std::regex_match(value, names)) {
@@ -87,7 +87,7 @@ void check_time(const std::string& time) {
   }
 }
 
-/// Options of sbatch on which the launcher itself relies.
+/// Options of sbatch that the launcher sets itself.
 constexpr std::array<std::string_view, 19> kOwnOptions = {
     "-a",       "--array", "-o",           "--output",   "-e",
     "--error",  "-d",      "--dependency", "-J",         "--job-name",

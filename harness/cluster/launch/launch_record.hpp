@@ -1,5 +1,5 @@
-// What is kept of a launch: the record, by which later processes find it, and in the campaign's
-// folder how its tasks ended.
+// Persistent data of a launch: the record, by which later processes find it, and in the campaign's
+// folder the ends of its tasks.
 #pragma once
 
 #include <optional>
@@ -13,32 +13,34 @@ namespace qsmpc::harness {
 
 struct LaunchRecord {
   std::string kind;    ///< "local", "ssh" or "slurm"
-  std::string launch;  ///< its name, which no other launch of the folder has
+  std::string launch;  ///< its name, unique among the folder's launches
   std::string folder;  ///< the campaign's
   int tasks = 0;
   std::vector<std::string> where{};  ///< local, ssh: the machine of each task, by its number
   ProcessIdentity conductor{};       ///< local, ssh: the process that started them
-  std::string job{};                 ///< slurm: the array's number
-  std::string gather_job{};          ///< slurm: that of the job after it; empty: none
+  std::string job{};                 ///< slurm: the number of the job array
+  std::string gather_job{};          ///< slurm: the number of the job after it; empty: none
 
   friend bool operator==(const LaunchRecord&, const LaunchRecord&) = default;
 };
 
-/// As one line of JSON, and back. The second throws InputError on something else.
+/// Converts a record to one line of JSON, and back. The second function throws InputError on any
+/// other text.
 [[nodiscard]] std::string launch_record_text(const LaunchRecord& record);
 [[nodiscard]] LaunchRecord launch_record_of(const std::string& text);
 
-/// Begins a launch in the campaign's folder: the folders for its logs and ends are there when it
-/// returns. Returns its name. Throws IoError.
+/// Begins a launch in the campaign's folder: creates the folders for its logs and task ends, and
+/// returns its name. Throws IoError.
 [[nodiscard]] std::string begin_launch(const std::string& folder);
 
-/// `cluster/ends/LAUNCH` of the campaign's folder. A file TASK in it begins with the condition in
-/// which the task ended; the rest of it is the note. A file `cancelled` says that the launch was.
+/// `cluster/ends/LAUNCH` of the campaign's folder. A file TASK in it starts with the condition in
+/// which the task ended, followed by the note. A file `cancelled` means that the launch was
+/// cancelled.
 [[nodiscard]] std::string ends_folder(const std::string& folder, const std::string& launch);
 
-/// Of a task that has ended: `condition`, `note` and `task`. Throws IoError.
+/// Writes `condition` and `note` of the ended task `end.task`. Throws IoError.
 void write_task_end(const LaunchRecord& record, const TaskState& end);
-/// Nothing where it has not. Throws InputError where the file says something else.
+/// The end of `task`; nothing if it has not ended. Throws InputError if the file is malformed.
 [[nodiscard]] std::optional<TaskState> read_task_end(const LaunchRecord& record, int task);
 
 /// Throws IoError.

@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr int kStartField = 22;  // of /proc/PID/stat, from 1; see proc(5)
+constexpr int kStartField = 22;  // 1-based field of /proc/PID/stat; see proc(5)
 constexpr int kStateField = 3;
 
 std::string host_name() {
@@ -31,11 +31,11 @@ std::string boot_name() {
   return boot + " " + std::filesystem::read_symlink("/proc/self/ns/pid", error).string();
 }
 
-/// When the process with this number started; nothing where there is none, or only its exit code.
+/// The start time of the process `number`; nothing if it does not exist or is a zombie.
 std::optional<std::int64_t> start_of(std::int64_t number) {
   std::ifstream file(fmt::format("/proc/{}/stat", number));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  // The name, in parentheses, may hold anything.
+  // The name, in parentheses, may contain any character.
   const std::size_t name_end = text.rfind(')');
   if (name_end == std::string::npos) return std::nullopt;
   std::istringstream fields(text.substr(name_end + 1));

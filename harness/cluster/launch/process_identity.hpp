@@ -1,5 +1,5 @@
-// A process that other processes and machines may ask about later, when its number may be
-// another's.
+// Identifies a process for later queries by other processes and machines, when its pid may have
+// been reused.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,10 @@
 namespace qsmpc::harness {
 
 struct ProcessIdentity {
-  std::string host{};        ///< name of the machine
-  std::string boot{};        ///< which of its starts, and which of its spaces of process numbers
+  std::string host{};        ///< host name of the machine
+  std::string boot{};        ///< identifies the machine's boot and the pid namespace
   std::int64_t number = 0;   ///< pid
-  std::int64_t started = 0;  ///< clock ticks since the machine's start
+  std::int64_t started = 0;  ///< start time, in clock ticks since boot
 
   friend bool operator==(const ProcessIdentity&, const ProcessIdentity&) = default;
 };
@@ -20,7 +20,7 @@ enum class ProcessFate { kAlive, kGone, kElsewhere };
 
 [[nodiscard]] ProcessIdentity this_process();
 
-/// kElsewhere where the process is on another machine, which this one cannot ask.
+/// kElsewhere if the process is on another machine, which this one cannot query.
 [[nodiscard]] ProcessFate fate_of(const ProcessIdentity& process);
 
 }  // namespace qsmpc::harness

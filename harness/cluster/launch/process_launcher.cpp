@@ -16,17 +16,18 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr std::chrono::milliseconds kTick{100};
-// How many ticks a word of another process in the folder may go unheard.
+// The folder is checked for cancellation by another process every this many ticks.
 constexpr int kTicksPerLook = 10;
-// Between connections to one host: sshd turns away more than ten that have not logged in yet.
+// Pause between connections to one host: sshd by default refuses more than ten unauthenticated
+// ones.
 constexpr std::chrono::milliseconds kBetweenConnections{200};
 constexpr const char* kHere = ":";
 
 constexpr int kSshFailed = 255;
-constexpr int kInterrupted = 130;  // the worker's own exit code after SIGTERM
+constexpr int kInterrupted = 130;  // the worker's exit code after SIGTERM
 constexpr int kSignalled = 128;    // + the signal's number
 
-/// How a task ended, by its exit code.
+/// The end state of a task, from its exit code.
 TaskState end_state(int task, const LaunchHost& host, int exit_code, bool told,
                     const std::string& words) {
   TaskState state{.task = task, .condition = TaskCondition::kFailed};
@@ -74,7 +75,7 @@ std::vector<std::string> task_command(const ProcessLauncherOptions& options, con
   if (host.login == kHere) return words;
   std::vector<std::string> ssh{"ssh", "-T", "-a", "-x"};
   if (!options.ssh_config.empty()) ssh.insert(ssh.end(), {"-F", options.ssh_config});
-  // It never asks, and a machine that has gone is found out within a minute.
+  // ssh must not prompt, and must detect an unreachable machine within about a minute.
   for (const char* const option :
        {"BatchMode=yes", "ConnectTimeout=20", "ServerAliveInterval=15", "ServerAliveCountMax=4"}) {
     ssh.insert(ssh.end(), {"-o", option});
@@ -99,7 +100,7 @@ std::string ProcessLauncher::start(const LaunchRequest& request) {
   }
   processes_.clear();
   processes_.resize(hosts.size());
-  // One connection to each host a round.
+  // One connection to each host per round.
   for (int round = 0;; ++round) {
     std::size_t index = 0;
     bool started = false;
@@ -122,7 +123,8 @@ std::string ProcessLauncher::start(const LaunchRequest& request) {
 
 std::vector<TaskState> ProcessLauncher::states(const std::string& record_text) {
   const LaunchRecord record = launch_record_of(record_text);
-  // Asked first: what ends meanwhile has its end written.
+  // Must come first: a conductor that is found gone has written all the ends that it will ever
+  // write.
   const ProcessFate conductor = fate_of(record.conductor);
   const bool cancelled = is_cancelled(record);
   std::vector<TaskState> states;

@@ -1,5 +1,5 @@
-// Workers as processes of this machine and of those that ssh reaches. This machine alone is the
-// list of hosts ":".
+// Runs workers as processes on this machine and on machines reached by ssh. This machine alone is
+// the host list ":".
 #pragma once
 
 #include <memory>
@@ -14,9 +14,9 @@ namespace qsmpc::harness {
 
 struct ProcessLauncherOptions {
   std::string kind;                 ///< "local" or "ssh"
-  std::vector<LaunchHost> hosts{};  ///< none: `start` is not called
+  std::vector<LaunchHost> hosts{};  ///< may be empty if `start` is not called
   std::string program =
-      "qsmpc";  ///< what hosts other than ":" run instead of the worker's first word
+      "qsmpc";  ///< what hosts other than ":" run in place of the worker's first word
   std::string ssh_config{};
 };
 
@@ -32,10 +32,10 @@ class ProcessLauncher final : public Launcher {
 
  private:
   ProcessLauncherOptions options_;
-  std::vector<std::unique_ptr<TaskProcess>> processes_;  // by number; null: its end is written
+  std::vector<std::unique_ptr<TaskProcess>> processes_;  // by task; null once its end is recorded
 };
 
-/// The command on this machine that runs `worker` on `host` for `task`.
+/// The command, run on this machine, that runs `worker` on `host` as task `task`.
 [[nodiscard]] std::vector<std::string> task_command(const ProcessLauncherOptions& options,
                                                     const LaunchHost& host,
                                                     const std::vector<std::string>& worker,

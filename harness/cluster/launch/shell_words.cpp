@@ -6,8 +6,8 @@
 namespace qsmpc::harness {
 namespace {
 
-// On one line, without '!' and backslash, so that the login shells of machines pass it on as it is.
-// A signal that comes before setsid has made the group is for the process alone.
+// On one line, without '!' and backslash, so that any login shell passes it on unchanged. Before
+// setsid has created the group, a signal goes to the process only.
 constexpr const char* kLeash =
     "exec 3<&0; "
     "setsid \"$@\" </dev/null 3<&- & w=$!; exec </dev/null >/dev/null 2>&1; "

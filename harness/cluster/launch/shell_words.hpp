@@ -1,4 +1,4 @@
-// Words for shells, and the one line of shell under which workers run.
+// Shell quoting, and the shell wrapper under which workers run.
 #pragma once
 
 #include <string>
@@ -6,15 +6,15 @@
 
 namespace qsmpc::harness {
 
-/// `words` as a command of sh, which splits it into these words again; csh and fish do, too, where
-/// there is no new line and no '!' in it.
+/// `words` quoted as a command that sh splits into these words again; so do csh and fish if it
+/// contains no newline and no '!'.
 [[nodiscard]] std::string shell_command(const std::vector<std::string>& words);
 
-/// The command that runs `words` as the leader of a session, its standard input empty, and exits as
-/// they do (128 + N by signal N). Its own standard input is a leash: each line on it is a SIGTERM
-/// to the session's processes, and its end, e.g. by the death of who holds it, ends them: SIGTERM,
-/// 5 s later once more, SIGKILL 15 s later. What they leave in their process group is killed. Needs
-/// sh, sleep and setsid.
+/// The command that runs `words` as a session leader with empty standard input, and exits with the
+/// same code (128 + N for signal N). The wrapper's own standard input is a leash: each line on it
+/// sends SIGTERM to the session's process group, and its end, e.g. because its holder died, ends
+/// the group: SIGTERM, a second one after 5 s, SIGKILL after 15 s. Processes left in the group when
+/// the leader ends are killed. Needs sh, sleep and setsid.
 [[nodiscard]] std::vector<std::string> leashed(const std::vector<std::string>& words);
 
 }  // namespace qsmpc::harness

@@ -18,7 +18,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// What Slurm's commands say of a job that has ended some minutes ago.
+/// The message of Slurm's commands about a job that ended some minutes ago.
 constexpr const char* kUnknownJob = "Invalid job id";
 
 /// Submits a script. Returns the job's number.
@@ -35,7 +35,7 @@ std::string submit(const std::vector<std::string>& options, const std::string& s
   return job;
 }
 
-/// Cancels a job that is not over yet. Throws IoError.
+/// Cancels a job unless it has ended. Throws IoError.
 void cancel_job(const std::string& job) {
   const CommandResult result = run_command({"scancel", job});
   if (result.exit_code == 0 || result.errors.find(kUnknownJob) != std::string::npos) return;
@@ -65,7 +65,7 @@ std::map<int, TaskState> known_tasks(const std::string& job) {
   return tasks;
 }
 
-/// Of a task that Slurm does not know any more.
+/// The state of a task that Slurm has forgotten.
 TaskState forgotten_task(const LaunchRecord& record, int task, bool cancelled) {
   if (auto end = read_task_end(record, task)) return *end;
   return {.task = task,
@@ -92,7 +92,7 @@ std::string SlurmLauncher::start(const LaunchRequest& request) {
       write_file(gather, gather_script(request, options_));
       record.gather_job = submit({"--dependency=afterany:" + record.job}, gather);
     } catch (...) {
-      // Nobody would know of the array.
+      // Without a record the array could not be found again.
       (void)run_command({"scancel", record.job});
       throw;
     }
@@ -123,7 +123,7 @@ std::vector<TaskState> SlurmLauncher::states(const std::string& record_text) {
 void SlurmLauncher::cancel(const std::string& record_text) {
   const LaunchRecord record = launch_record_of(record_text);
   mark_cancelled(record);
-  // First what would start when the array has ended.
+  // First the job that would start once the array has ended.
   if (!record.gather_job.empty()) cancel_job(record.gather_job);
   cancel_job(record.job);
 }

@@ -1,5 +1,5 @@
-// Workers as tasks of a job array on a Slurm cluster, by its commands sbatch, squeue and scancel.
-// Slurm starts them and what comes after them; nothing of this program waits.
+// Runs workers as tasks of a job array on a Slurm cluster, using sbatch, squeue and scancel. Slurm
+// starts them and the job after them; no process of this program waits.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ class SlurmLauncher final : public Launcher {
 
   /// Writes the scripts into `cluster/slurm` of the folder and submits them.
   [[nodiscard]] std::string start(const LaunchRequest& request) override;
-  /// As squeue says, and of tasks that Slurm has forgotten, as the folder does.
+  /// According to squeue, and for tasks that Slurm has forgotten, according to the folder.
   [[nodiscard]] std::vector<TaskState> states(const std::string& record) override;
   void cancel(const std::string& record) override;
   [[nodiscard]] bool stays() const override { return false; }

@@ -12,11 +12,11 @@
 namespace qsmpc::harness {
 namespace {
 
-// Lets the worker end its episodes: 60 s before the limit of time, the script gets SIGTERM.
+// The script gets SIGTERM 60 s before the time limit, so that the worker can finish its episodes.
 constexpr const char* kWarning = "B:TERM@60";
 
-// SIGTERM is passed on, also one that comes before there is a worker, or before it listens; `wait`
-// that it interrupts is not the worker's end.
+// SIGTERM is forwarded, even if it arrives before the worker exists or handles signals. A `wait`
+// interrupted by it does not mean that the worker has ended.
 constexpr const char* kWorkerBody = R"(
 told=
 worker=
@@ -41,8 +41,8 @@ echo "$word" >"$end.partial" && mv "$end.partial" "$end"
 exit "$status"
 )";
 
-/// A folder's name within "#SBATCH --NAME="…"", where % begins a replacement and a backslash ends
-/// all.
+/// A folder's name inside "#SBATCH --NAME="…"", where % begins a replacement pattern and a
+/// backslash disables all of them.
 std::string sbatch_path(const std::string& folder) {
   const auto is_bad = [](char c) {
     return c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20U || c == 0x7f;
@@ -57,7 +57,7 @@ std::string sbatch_path(const std::string& folder) {
   return text;
 }
 
-/// Of the campaign's folder, as far as it is fit for a job's name.
+/// The name of the job: that of the campaign's folder, with unsuitable characters replaced.
 std::string job_name(const std::string& folder) {
   std::string name = "qsmpc-";
   for (const char c : std::filesystem::path(folder).filename().string()) {

@@ -8,13 +8,13 @@
 
 namespace qsmpc::harness {
 
-/// The script of the array, of which each task is a worker of `request`. It may be stopped and
-/// requeued any time; how it ended is kept in the launch's ends_folder. Throws InputError where
-/// Slurm cannot take the folder's name.
+/// The script of the job array, whose tasks are the workers of `request`. A task may be stopped and
+/// requeued at any time; its end is written to the launch's ends_folder. Throws InputError if Slurm
+/// cannot handle the folder's name.
 [[nodiscard]] std::string worker_script(const LaunchRequest& request, const LaunchOptions& options,
                                         const std::string& launch);
 
-/// The script of the job after it. Throws as worker_script.
+/// The script of the job after the array. Throws as worker_script.
 [[nodiscard]] std::string gather_script(const LaunchRequest& request, const LaunchOptions& options);
 
 }  // namespace qsmpc::harness

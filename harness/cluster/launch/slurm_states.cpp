@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kFields = 5;
 
-/// squeue(1), JOB STATE CODES; all others are before or between runs.
+/// From squeue(1), JOB STATE CODES; in all other states a task is not running yet or again.
 struct SlurmWord {
   std::string_view word;
   TaskCondition condition;

@@ -1,4 +1,4 @@
-// What Slurm says of a job array.
+// Parses Slurm's description of a job array.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace qsmpc::harness {
 
-/// What `slurm_tasks` reads: squeue's option --Format.
+/// squeue's option --Format for the output that `slurm_tasks` parses.
 inline constexpr const char* kSqueueFormat =
     "ArrayTaskID:|,State:|,NodeList:|,Reason:|,RestartCnt:|";
 
-/// The tasks in squeue's answer, in its order. Slurm's word for the state and what is remarkable
-/// about it are the note. Throws IoError where it is in another form.
+/// The tasks in squeue's output, in its order. The note holds Slurm's state name with the reason
+/// and restarts, if any. Throws IoError if the output has another format.
 [[nodiscard]] std::vector<TaskState> slurm_tasks(const std::string& answer);
 
 }  // namespace qsmpc::harness

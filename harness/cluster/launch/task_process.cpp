@@ -34,7 +34,7 @@ TaskProcess::TaskProcess(const std::vector<std::string>& words, const std::strin
   struct stat status {};
   if (!file.is_open() || ::fstat(file.get(), &status) != 0) fail_task(log);
   log_begin_ = status.st_size;
-  // No pipe: a write to one that nobody reads any more is a signal.
+  // Not a pipe: writing to one without a reader raises SIGPIPE.
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     fail_task("socketpair");
@@ -48,7 +48,7 @@ TaskProcess::TaskProcess(const std::vector<std::string>& words, const std::strin
 
 void TaskProcess::ask_to_end() {
   constexpr std::string_view kLine = "stop\n";
-  // One that has ended needs none.
+  // A process that has ended needs no signal.
   if (leash_.is_open()) {
     (void)!::send(leash_.get(), kLine.data(), kLine.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   }

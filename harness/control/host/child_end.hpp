@@ -1,4 +1,4 @@
-// How a controller's process ended, as its host tells the program.
+// How a controller's process ended, as reported by its host to the program.
 #pragma once
 
 #include <cstdint>

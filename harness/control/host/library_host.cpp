@@ -25,12 +25,12 @@ using nlohmann::json;
 constexpr std::size_t kErrorBytes = 1024;
 constexpr std::size_t kChunk = 65536;
 
-/// Lines of a descriptor.
+/// Reads lines from a descriptor.
 class LineReader {
  public:
   explicit LineReader(int descriptor) : descriptor_(descriptor) {}
 
-  /// Nothing at the end.
+  /// Nothing at the end of the stream.
   [[nodiscard]] std::optional<std::string> next() {
     for (;;) {
       const std::size_t end = buffer_.find('\n', searched_);
@@ -60,7 +60,7 @@ void write_line(int descriptor, const json& message) {
   for (std::size_t done = 0; done < line.size();) {
     const ssize_t count = ::write(descriptor, line.data() + done, line.size() - done);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) std::exit(EXIT_FAILURE);  // the program has gone
+    if (count < 0) std::exit(EXIT_FAILURE);  // the program has ended
     done += static_cast<std::size_t>(count);
   }
 }
@@ -86,7 +86,7 @@ const qsmpc_controller_table& table_of(const std::string& path) {
   return *table;
 }
 
-/// The library's controller, and what it writes its answers to.
+/// The library's controller, and the buffers for its answers.
 class LibraryController {
  public:
   LibraryController(const std::string& path, const json& scenario, std::string line)
@@ -142,7 +142,7 @@ class LibraryController {
   }
 
  private:
-  /// Numbers that are not finite go as texts, so that messages can name them.
+  /// Non-finite numbers are sent as strings, so that messages can name them.
   static json number_json(double value) {
     if (std::isfinite(value)) return value;
     return std::isnan(value) ? "nan" : value > 0.0 ? "inf" : "-inf";
@@ -155,7 +155,7 @@ class LibraryController {
   }
 
   [[nodiscard]] json input_json(const qsmpc_answer& answer) const {
-    // A count beyond what there is room for has nothing to be read.
+    // A count that exceeds the buffer leaves nothing valid to read.
     const bool fits = answer.input_count >= 0 && answer.input_count <= problem_.get().input_dim;
     if (fits) {
       return {{"input", list_json(input_.data(), static_cast<std::size_t>(answer.input_count))}};

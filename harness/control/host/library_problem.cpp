@@ -22,7 +22,7 @@ double limit_in(const json& value) { return value.is_null() ? kNoLimit : value.g
 
 int index_in(const json& value) { return value.is_null() ? -1 : value.get<int>(); }
 
-/// What `key` of each item holds, one after the other.
+/// The values of `key` in all items, concatenated.
 std::vector<double> column(const json& list, const char* key, double infinity) {
   std::vector<double> numbers;
   for (const json& item : list) append(item.at(key), infinity, numbers);
@@ -100,7 +100,7 @@ void LibraryProblem::add_surroundings(const json& scenario) {
   problem_.bounds_upper = keep(numbers_in(safe_set.at("upper"), kNoLimit));
   json obstacles = json::array();
   for (const json& obstacle : safe_set.at("obstacles")) {
-    if (obstacle.contains("lower")) obstacles.push_back(obstacle);  // shapes are in `json` alone
+    if (obstacle.contains("lower")) obstacles.push_back(obstacle);  // shapes are only in `json`
   }
   problem_.obstacle_count = static_cast<std::int32_t>(obstacles.size());
   problem_.obstacle_lower = keep(column(obstacles, "lower", -kNoLimit));

@@ -1,4 +1,4 @@
-// A scenario as the C interface has it, made from the program's message.
+// A scenario in the form of the C interface, made from the program's message.
 #pragma once
 
 #include <deque>
@@ -11,7 +11,7 @@
 
 namespace qsmpc::harness {
 
-/// Holds all that the problem points to.
+/// Owns all data that the problem points to.
 class LibraryProblem {
  public:
   /// `scenario`: the message of type "scenario"; `line`: its text.
@@ -27,7 +27,7 @@ class LibraryProblem {
   void add_system(const nlohmann::json& scenario);
   void add_surroundings(const nlohmann::json& scenario);
 
-  std::deque<std::string> texts_;            // at addresses that stay
+  std::deque<std::string> texts_;            // at stable addresses
   std::deque<std::vector<double>> numbers_;  // the same
   std::vector<qsmpc_coordinate> states_;
   std::vector<qsmpc_coordinate> inputs_;
@@ -35,7 +35,7 @@ class LibraryProblem {
   qsmpc_problem problem_{};
 };
 
-/// The numbers of a list, or of a list of rows one after the other; null is `infinity`.
+/// The numbers of a list, or of a list of rows, concatenated; null becomes `infinity`.
 [[nodiscard]] std::vector<double> numbers_in(const nlohmann::json& list, double infinity);
 
 }  // namespace qsmpc::harness

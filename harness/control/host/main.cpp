@@ -1,12 +1,12 @@
-// The process beside a controller that is no part of the program: it starts it, tells how it ended,
-// and ends it with all of its children, however the program itself ends.
+// The host process of a controller outside the program: it starts the controller, reports how it
+// ended, and ends it with all of its children, however the program itself ends.
 //
 //   qsmpc-host FOLDER run PROGRAM [ARGUMENT…]
 //   qsmpc-host FOLDER library LIBRARY
 //
-// Standard input, output and error are the controller's. Descriptor 3 is the leash, a socket of the
-// program's: on it the end of the controller is told, and its end, or that of the program, ends
-// everything. Started by harness/control/child_process.cpp.
+// Standard input, output and error are the controller's. Descriptor 3 is the leash, a socket to the
+// program: it reports the controller's end, and when it closes, or the program ends, everything is
+// ended. Started by harness/control/child_process.cpp.
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -35,18 +35,18 @@ namespace {
 using qsmpc::harness::ChildEnd;
 
 constexpr int kLeash = 3;
-// How long whoever is asked to end may take, before it is killed.
+// Time for processes to end when asked, before they are killed.
 constexpr std::chrono::milliseconds kGrace{1000};
-// What does not go then cannot go, e.g. in the middle of input or output that never ends.
+// Processes that survive this cannot be killed, e.g. in I/O that never completes.
 constexpr std::chrono::milliseconds kKilling{2000};
 constexpr std::chrono::milliseconds kLook{5};
 
 void tell(ChildEnd end) {
-  // Nobody may be there any more.
+  // The program may have ended.
   (void)::send(kLeash, &end, sizeof end, MSG_NOSIGNAL);
 }
 
-/// The protocol's descriptors, out of the way of what a library reads and prints.
+/// Moves the protocol's descriptors away from those that a library reads and prints to.
 int serve(const std::string& path) {
   const int input = ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, kLeash + 1);
   const int output = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, kLeash + 1);
@@ -74,7 +74,7 @@ int serve(const std::string& path) {
   if (words[2] == "library") {
     ::close(failure);
     ::close(kLeash);
-    // A crash is told as what it is, sanitizers or not.
+    // Crashes are reported as signals, even with sanitizers.
     for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) {
       std::signal(number, SIG_DFL);
     }
@@ -90,7 +90,7 @@ int serve(const std::string& path) {
   std::abort();
 }
 
-/// Children that are not in the controller's group: adopted ones of sessions of their own.
+/// All children, including adopted ones that have left the controller's process group.
 std::vector<pid_t> children() {
   std::vector<pid_t> found;
   std::ifstream list("/proc/self/task/" + std::to_string(::getpid()) + "/children");
@@ -103,7 +103,7 @@ void signal_all(pid_t group, int number) {
   for (const pid_t child : children()) ::kill(child, number);
 }
 
-/// Reaps what has ended. Returns whether nothing is left; tells of the controller's end.
+/// Reaps ended children and reports the controller's end. Returns whether no child is left.
 bool reap(pid_t controller, bool& told) {
   for (;;) {
     int status = 0;
@@ -118,20 +118,20 @@ bool reap(pid_t controller, bool& told) {
   }
 }
 
-/// Whether all had gone `patience` after they were sent the signal.
+/// Sends the signal to all; returns whether all have ended within `patience`.
 bool ended_by(int number, pid_t controller, bool& told, std::chrono::milliseconds patience) {
   const auto until = std::chrono::steady_clock::now() + patience;
   signal_all(controller, number);
   while (!reap(controller, told)) {
     if (std::chrono::steady_clock::now() >= until) return false;
     std::this_thread::sleep_for(kLook);
-    // Those whose parents went first are ours only now.
+    // Orphans are adopted only once their parents have ended.
     if (number == SIGKILL) signal_all(controller, number);
   }
   return true;
 }
 
-/// Waits until the controller has ended or nobody wants it any more.
+/// Waits until the controller has ended or is no longer wanted.
 void watch(pid_t controller, int signals, bool& told) {
   std::array<pollfd, 2> at{{{.fd = kLeash, .events = POLLIN, .revents = 0},
                             {.fd = signals, .events = POLLIN, .revents = 0}}};
@@ -148,7 +148,7 @@ void watch(pid_t controller, int signals, bool& told) {
 
 int run(const std::vector<std::string>& words) {
   ::fcntl(kLeash, F_SETFD, FD_CLOEXEC);
-  // Whatever else the program had open is none of the controller's business.
+  // The controller must not inherit the program's other descriptors.
   ::close_range(kLeash + 1, ~0U, 0);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   std::signal(SIGPIPE, SIG_DFL);
@@ -166,9 +166,9 @@ int run(const std::vector<std::string>& words) {
     return EXIT_FAILURE;
   }
   if (controller == 0) become_controller(words, host, failure[1]);
-  ::setpgid(controller, controller);  // whoever is first
+  ::setpgid(controller, controller);  // in parent and child, so that neither has to wait
   ::close(failure[1]);
-  // They are the controller's alone, so that their end is its end.
+  // Only the controller keeps the standard streams open, so that they close when it ends.
   const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     ::dup2(nothing, standard);

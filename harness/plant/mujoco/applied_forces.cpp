@@ -12,7 +12,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kLeastUpright = 0.5;  // vertical part of the normal of what carries a wheel
+constexpr double kLeastUpright = 0.5;  // vertical component of a carrying contact's normal
 
 /// Adds a force at a point, both in the world's axes, to what is applied to a body.
 void push(mjData& data, int body, const Eigen::Vector3d& force, const Eigen::Vector3d& point) {
@@ -47,7 +47,7 @@ PlaneMotion plane_motion(const mjModel& model, const mjData& data, int body,
           .yaw_rate = motion[2]};
 }
 
-/// Fiala's brush: the share of friction that slip, in units of friction, calls up.
+/// Fiala's brush model: the share of the available friction as a function of normalised slip.
 double brush(double slip) {
   constexpr double kFullSlide = 3.0;
   if (slip >= kFullSlide) return 1.0;
@@ -99,7 +99,7 @@ TyreForceBinding::TyreForceBinding(const NamedModel& named, const TyreForces& fo
   for (const TyreWheel& wheel : forces.wheels) {
     const int joint = scalar_joint(named, wheel.joint);
     const int body = model_.jnt_bodyid[joint];
-    // A wheel's principal axis of largest inertia is its axle.
+    // A wheel's axle is its principal axis of largest inertia.
     const double* inertia = model_.body_inertia + std::ptrdiff_t{3} * body;
     const int dof = model_.jnt_dofadr[joint];
     wheels_.push_back(
@@ -152,7 +152,8 @@ void TyreForceBinding::apply(mjData& data) const {
     const double across_rate = wheel.stiffness / slip_speed * gravity / load;
     const double along = longitudinal_stiffness_ / (1.0 + step * along_rate) *
                          (wheel.radius * data.qvel[wheel.dof] - motion.speed) / slip_speed;
-    // Two forces at an axle, and two axles, share a slip: stable up to half of what one would be.
+    // Two wheels per axle, and two axles, act on the same slip: stable up to half of the bound for
+    // a single force.
     const double across =
         -wheel.stiffness / std::max(1.0, 2.0 * step * across_rate) * motion.lateral / slip_speed;
     const double size = std::hypot(along, across);

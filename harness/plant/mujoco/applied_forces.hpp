@@ -1,5 +1,5 @@
-// Forces that a MuJoCo model cannot express itself and that the plant works out at every time step:
-// tyres, at axles of a body in the plane or at wheels on the ground. Private to the MuJoCo plant.
+// Forces that a MuJoCo model cannot express, computed by the plant at every time step: tyre forces
+// at the axles of a planar body or at wheels on the ground. Private to the MuJoCo plant.
 #pragma once
 
 #include <variant>
@@ -13,14 +13,15 @@
 
 namespace qsmpc::harness {
 
-/// The forces of Eq. 5-4 on a body in the plane. With v, v_y the speeds along and across it at its
-/// origin, ω its yaw rate, and l the distance of an axle's site before the origin,
+/// The forces of Eq. 5-4 on a body in the plane. With v, v_y the longitudinal and lateral speed at
+/// its origin, ω its yaw rate, and l the distance of an axle's site ahead of the origin,
 ///
 ///     across at an axle:  −C ((v_y + l ω)/max(|v|, slowest) − δ),  δ at the front axle only,
 ///     along:              m (a − v_y ω),
 ///
-/// where m is the mass of the whole vehicle. The second is what makes the forward speed's rate
-/// equal to the wanted a: the equations have no v_y ω in it, and a body in the plane has.
+/// where m is the mass of the whole vehicle. The second force makes the rate of the forward speed
+/// equal to the commanded a: it cancels the v_y ω term, which a body in the plane has and the
+/// equations do not.
 class AxleForceBinding {
  public:
   AxleForceBinding(const NamedModel& named, const AxleForces& forces,
@@ -44,25 +45,25 @@ class AxleForceBinding {
   double mass_;
 };
 
-/// Tyres of wheels that stand on the ground. At the point below a wheel's centre, at the speed
-/// (v, v_y) along and across the wheel, with the wheel's spin Ω about its axle and radius r,
+/// Forces of tyres that touch the ground. At the point below a wheel's centre, with the wheel's
+/// longitudinal and lateral speed (v, v_y), spin Ω about its axle and radius r,
 ///
 ///     s = (C_x (rΩ − v), −C_y v_y)/max(|v|, slowest),   force = s μN g(|s|/μN)/|s|,
 ///
-/// with the Fiala brush's g(ρ) = ρ − ρ²/3 + ρ³/27 below ρ = 3 and 1 above: linear in small slips,
-/// limited by friction times load N. With h the time step and λ the rate at which such a force
-/// brings its slip to zero, C_x is taken over 1 + hλ and C_y over max(1, 2hλ): a force then never
-/// turns its slip round within a step, at any speed. Along, this leaves the force as it is, since
-/// it is the axle's torque that determines it; across, C_y is cut at speeds near `slowest` only.
-/// N is what the ground pressed with in the last step, or what the wheel carries at rest.
+/// with g(ρ) = ρ − ρ²/3 + ρ³/27 for ρ < 3 and 1 otherwise (Fiala's brush model): linear for small
+/// slip, limited by friction times load N. With h the time step and λ the rate at which such a
+/// force drives its slip to zero, C_x is divided by 1 + hλ and C_y by max(1, 2hλ), so that a force
+/// never reverses its slip within a step, at any speed. The longitudinal force is unaffected, since
+/// the axle's torque determines it; C_y is reduced only at speeds near `slowest`. N is the ground's
+/// contact force in the last step, or the wheel's static load.
 class TyreForceBinding {
  public:
   TyreForceBinding(const NamedModel& named, const TyreForces& forces);
 
-  /// Of the wheels, N.
+  /// Loads of the wheels, N.
   [[nodiscard]] const Eigen::VectorXd& loads() const { return loads_; }
   void set_loads(const Eigen::VectorXd& loads) { loads_ = loads; }
-  /// Notes the loads. data: after a whole step or mj_forward.
+  /// Records the loads. data: after a whole step or mj_forward.
   void weigh(const mjData& data);
   /// Adds the forces to data.xfrc_applied. data: after mj_step1.
   void apply(mjData& data) const;

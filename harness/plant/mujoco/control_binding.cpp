@@ -110,8 +110,8 @@ void ControlBinding::add(const NamedModel& named, const SpeedHoldLoop& loop,
                           .body = model_.body_rootid[model_.jnt_bodyid[joint]]});
 }
 
-// A point (forward, left) of a body that moves at v and yaws at ω about the middle of its axle has
-// the velocity (v − ω left, ω forward); the wheel there must point along it.
+// On a body that moves at v and yaws at ω about the middle of its axle, the point (forward, left)
+// has the velocity (v − ω left, ω forward); the wheel there must be aligned with it.
 Eigen::VectorXd ControlBinding::targets(const Eigen::VectorXd& input) const {
   Eigen::VectorXd controls = Eigen::VectorXd::Zero(model_.nu);
   for (const Term& term : terms_)

@@ -1,5 +1,5 @@
-// A system's inputs as controls of a MuJoCo model's actuators, with the low-level loops that do
-// not depend on the simulated state. Private to the MuJoCo plant.
+// A system's inputs as controls of a MuJoCo model's actuators, including the low-level loops that
+// do not depend on the simulated state. Private to the MuJoCo plant.
 #pragma once
 
 #include <string>
@@ -13,32 +13,32 @@
 
 namespace qsmpc::harness {
 
-/// A PlantConstant as a number. Throws InputError on a name that is no parameter.
+/// The value of a PlantConstant. Throws InputError on an unknown parameter.
 [[nodiscard]] double constant_value(const PlantConstant& constant,
                                     const models::ParameterMap& parameters);
 
 class ControlBinding {
  public:
   /// data: after mj_forward at the model's reference pose. Throws InputError on a name that the
-  /// model does not have, a steered wheel that is not before the fixed axle, and a speed that is
+  /// model does not have, a steered wheel that is not ahead of the fixed axle, and a speed that is
   /// not above 0.
   ControlBinding(const NamedModel& named, const mjData& data, const PlantMapping& mapping,
                  const models::SystemDescription& system, const models::ParameterMap& parameters);
 
-  /// The controls (nu) that `input` (input_dim) asks for.
+  /// The controls (nu) that `input` (input_dim) requests.
   [[nodiscard]] Eigen::VectorXd targets(const Eigen::VectorXd& input) const;
 
-  /// Moves the controls towards `targets` as far as their rates allow within one time step.
+  /// Moves the controls towards `targets`, within their rate limits for one time step.
   void follow(mjData& data, const Eigen::VectorXd& targets) const;
 
-  /// A loop that holds a speed.
+  /// A loop that holds a constant speed.
   struct SpeedHold {
     double speed;  ///< m/s
     int actuator;
     double command;  ///< rad/s
-    int body;        ///< that the wheel belongs to, at the root
-    /// Corrects the command by the steady speed (m/s, > 0) to which it led: a loaded wheel rolls
-    /// on slightly less than its radius and the servo droops under rolling resistance.
+    int body;        ///< root body of the wheel
+    /// Corrects the command, given the steady speed (m/s, > 0) that it produced: a loaded wheel
+    /// rolls on slightly less than its radius, and the servo droops under rolling resistance.
     void calibrate(double steady_speed) { command *= speed / steady_speed; }
   };
   [[nodiscard]] std::vector<SpeedHold>& speed_holds() { return speed_holds_; }
@@ -76,10 +76,10 @@ class ControlBinding {
   std::vector<Constant> constants_;
   std::vector<Ackermann> ackermann_;
   std::vector<SpeedHold> speed_holds_;
-  Eigen::VectorXd most_change_;  // of a control within one time step
+  Eigen::VectorXd most_change_;  // of each control per time step
 };
 
-/// Index of the input called `name`, which the system has.
+/// Index of the input called `name`, which must exist.
 [[nodiscard]] Eigen::Index input_index(const models::SystemDescription& system,
                                        const std::string& name);
 

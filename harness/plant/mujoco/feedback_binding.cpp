@@ -11,9 +11,9 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kHeld = "held by feedback";
-constexpr double kTestShare = 0.25;  // of the least limit of the command
+constexpr double kTestShare = 0.25;  // of the smaller limit of the command
 
-/// The quantity as the only state of a system.
+/// The state binding of a system whose only state is the quantity.
 StateBinding bind_quantity(const NamedModel& named, mjData& data, const PlantQuantity& quantity) {
   PlantMapping mapping;
   mapping.states[kHeld] = quantity;
@@ -83,7 +83,7 @@ void FeedbackBinding::act(const mjData& data, const Eigen::VectorXd& input,
   const double wanted = (error - velocity + memory_) / (response_ * time_constant_);
   const double command = std::clamp(wanted, least_, most_);
   add(command, controls);
-  // What the error would add to the command, beyond its limit or back from it.
+  // Whether the command is saturated and the error would drive it further beyond the limit.
   const bool is_held_back = (wanted - command) * error / response_ > 0.0;
   if (!is_held_back) memory_ += model_.opt.timestep * error / time_constant_;
 }

@@ -12,13 +12,13 @@
 namespace qsmpc::harness {
 namespace {
 
-// What counts as zero beside the deviation of a state, and of a rate that is no state: the latter
-// beside what crosses a position's deviation in a period.
+// Tolerances relative to a state's standard deviation and, for a rate that is not a state, to the
+// rate that covers the position's deviation in one period.
 constexpr double kTolerance = 1e-2;
 constexpr double kFreeRateTolerance = 0.1;
 constexpr int kMostRuns = 25;
-constexpr double kLeastDeviation = 1e-3;  // m or rad: where none is planned
-constexpr double kShortestStep = 0.02;    // of a step towards the solution
+constexpr double kLeastDeviation = 1e-3;  // m or rad, where no noise is planned
+constexpr double kShortestStep = 0.02;    // fraction of a full step towards the solution
 constexpr int kMostDoublings = 40;
 constexpr double kGivesWay = 0.25;  // of a deviation
 
@@ -68,8 +68,8 @@ void ForceShooting::set_scales(Simulation& simulation, const Eigen::MatrixXd& co
   units_ << deviations_, deviations_ / period;
 }
 
-/// Servos hold against springs that would move a free body: their ends move further, until the
-/// vehicle gives way by something like what the noise is to move it.
+/// Servos resist springs that would move a free body. The springs' end points are therefore moved
+/// further, until the vehicle moves by a displacement comparable to that of the noise.
 void ForceShooting::measure_sensitivities(Simulation& simulation) {
   const SimulationSnapshot start = simulation.snapshot();
   path_ = simulation.take_period();
@@ -106,7 +106,7 @@ Eigen::VectorXd ForceShooting::after(Simulation& simulation, const SimulationSna
     for (int k = 0; k < simulation.period_steps(); ++k) simulation.step();
     return simulation.placement(heading);
   } catch (const MujocoError&) {
-    // Forces that break the simulation are too large: infinitely far from the goal.
+    // Forces that break the simulation are too large: the miss is infinite.
     return Eigen::VectorXd::Constant(tolerances_.size(), std::numeric_limits<double>::infinity());
   }
 }
@@ -130,7 +130,7 @@ PeriodPull ForceShooting::solve(Simulation& simulation, const Eigen::VectorXd& d
         step * models::solve_fully_pivoted(sensitivities, goal - reached);
     if (!change.allFinite() || change.isZero(0.0)) break;
     const Eigen::VectorXd tried = after(simulation, start, best + change);
-    // Broyden's update: the sensitivities agree with what was just seen.
+    // Broyden's update: makes the sensitivities consistent with the last step.
     const Eigen::VectorXd seen = tried - reached;
     if (seen.allFinite()) {
       sensitivities += (seen - sensitivities * change) * change.transpose() / change.squaredNorm();

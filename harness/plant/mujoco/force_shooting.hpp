@@ -1,5 +1,5 @@
-// Forces in place of a kick: found for every period by simulating it again and again. Private to
-// the MuJoCo plant.
+// Disturbance forces instead of a state jump, found in every period by repeated simulation. Private
+// to the MuJoCo plant.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,12 +8,13 @@
 
 namespace qsmpc::harness {
 
-/// A force that is held over the period cannot bring the covariance that the model plans with: it
-/// moves a free body by half of what it changes the velocity by, and one that is held or rolls by
-/// far less than its impulse suggests. Here springs pull the vehicle off its path, which tames the
-/// friction of wheels that let go of the ground, and where their free ends go is searched with the
-/// whole simulation as the function to be solved (Broyden's method, from sensitivities measured
-/// once): servos, tyres and the springs' own compliance are all accounted for.
+/// A force held constant over the period cannot produce the covariance that the model plans with:
+/// it displaces a free body by only half of its change of velocity times the period, and a body
+/// that is held or rolls by far less than its impulse suggests. Instead, springs pull the vehicle
+/// off its path, which stabilises the friction of wheels that lose grip. The end points of the
+/// springs are found by Broyden's method, with the whole simulation as the function to be solved
+/// and sensitivities measured once: servos, tyres and the springs' own compliance are all accounted
+/// for.
 class ForceShooting {
  public:
   /// covariance: of the disturbances, state_dim x state_dim. Throws InputError where a state with a
@@ -21,10 +22,9 @@ class ForceShooting {
   ForceShooting(Simulation& simulation, const models::SystemDescription& system,
                 const Eigen::MatrixXd& covariance);
 
-  /// What pulls the vehicle through the period that `simulation` is about to take (after
-  /// start_period) as near as can be found to where `disturbance`, added at the end of the
-  /// undisturbed period, would bring it. The simulation is left as it was; the result holds until
-  /// the next call.
+  /// The pull over the period that `simulation` is about to take (after start_period) that brings
+  /// the vehicle as close as can be found to the state at the end of the undisturbed period plus
+  /// `disturbance`. The simulation is left unchanged; the result is valid until the next call.
   [[nodiscard]] PeriodPull solve(Simulation& simulation, const Eigen::VectorXd& disturbance);
 
  private:

@@ -1,4 +1,4 @@
-// Where the joints of a vehicle are in a state, for episodes that were not driven in MuJoCo.
+// The joint positions of a vehicle in a given state, for episodes that were not driven in MuJoCo.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +15,13 @@ namespace qsmpc::harness {
 
 class JointPose {
  public:
-  /// Of the MuJoCo file `mjcf`, as `scenario` or the file itself says how the system appears in it;
-  /// nothing where neither does. Throws InputError where the file is no model, or a joint is
-  /// missing.
+  /// Of the MuJoCo file `mjcf`, with the mapping of `scenario` or of the file itself; nothing where
+  /// neither has one. Throws InputError where the file is not a model, or a joint is missing.
   [[nodiscard]] static std::optional<JointPose> of(const Scenario& scenario,
                                                    const models::SystemDescription& system,
                                                    const std::string& mjcf);
 
-  /// Values of all joints of the model; those that are no state are at its reference pose.
+  /// The positions of all joints of the model; those that are not states are at its reference pose.
   [[nodiscard]] std::vector<double> qpos(const Eigen::Ref<const Eigen::VectorXd>& state) const;
 
  private:

@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kSamplePeriod = 0.02;  // s; pictures between samples are interpolated
+constexpr double kSamplePeriod = 0.02;  // s; video frames between samples are interpolated
 
 void require_size(const Eigen::VectorXd& vector, std::size_t size, const char* what) {
   if (static_cast<std::size_t>(vector.size()) == size) return;
@@ -47,7 +47,7 @@ class MujocoPlant final : public Plant {
       shooting_.emplace(*simulation_, setup.system, setup.force_covariance);
     }
     simulation_->reset(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(state_dim_)));
-    // Not before: a vehicle settles where it happens to be in its file.
+    // Only now: the vehicle settles at its position in the file, which may be inside an obstacle.
     simulation_->set_solid_standing(true);
   }
 
@@ -106,7 +106,7 @@ class MujocoPlant final : public Plant {
     if (!disturbance.allFinite()) throw MujocoError("disturbance that is not finite");
     simulation_->start_period(input);
     if (shooting_ && !disturbance.isZero(0.0)) {
-      // The pull is that of a vehicle that nothing stops.
+      // The pull is computed for a vehicle that does not collide.
       simulation_->set_solid_standing(false);
       simulation_->set_pull(shooting_->solve(*simulation_, disturbance));
       simulation_->set_solid_standing(true);
@@ -119,7 +119,7 @@ class MujocoPlant final : public Plant {
     result.motion.push_back(sample());
   }
 
-  /// The simulator's steps of a period. What they brought before one that fails is kept.
+  /// Takes the simulator steps of a period. If one fails, the results of those before are kept.
   void take_steps(PlantStep& result) {
     const int steps = simulation_->period_steps();
     result.between.resize(Eigen::Index(state_dim_), steps);
@@ -143,7 +143,7 @@ class MujocoPlant final : public Plant {
     }
   }
 
-  /// Adds what the vehicle touches at `time`.
+  /// Records the contact force; `time` is the time of a first contact.
   void note_contact(double time, PlantContact& contact) const {
     const double force = simulation_->contact_force();
     contact.force = std::fmax(contact.force, force);
@@ -155,7 +155,7 @@ class MujocoPlant final : public Plant {
   std::unique_ptr<Simulation> simulation_;
   std::optional<ForceShooting> shooting_;
   int sample_steps_;
-  Eigen::Matrix3Xd obstacles_;        // that move, at the beginning of the period
+  Eigen::Matrix3Xd obstacles_;        // of moving obstacles, at the beginning of the period
   Eigen::Matrix3Xd moved_obstacles_;  // the same at its end
   std::optional<std::string> fault_;
 };

@@ -20,9 +20,9 @@
 namespace qsmpc::harness {
 namespace {
 
-// Tyres and contacts need some thousands at most; more keep a drive from ever ending.
+// Tyres and contacts need a few thousand at most; with more, a drive would hardly end.
 constexpr int kMostPeriodSteps = 20'000;
-// Of the springs' angular frequency by the time step: explicit springs are stable below 2.
+// Product of the springs' angular frequency and the time step: explicit springs are stable below 2.
 constexpr double kPullRate = 0.25;
 
 std::vector<double> copied(const double* values, int count) { return {values, values + count}; }
@@ -32,8 +32,8 @@ int first_bad(const double* values, int count) {
   return static_cast<int>(std::find_if(values, values + count, is_bad) - values);
 }
 
-/// How often `step` goes into `duration`. Throws InputError unless it does so without a rest, and
-/// not too often.
+/// The number of steps of size `step` in `duration`. Throws InputError unless it is whole and not
+/// too large.
 int whole_steps(const std::string& file, double step, double duration) {
   const double ratio = std::round(duration / step);
   if (ratio > kMostPeriodSteps) {
@@ -44,7 +44,7 @@ int whole_steps(const std::string& file, double step, double duration) {
          .expected = fmt::format("at most {} steps in a control period of {} s: at least {:.3g} s",
                                  kMostPeriodSteps, duration, duration / kMostPeriodSteps)});
   }
-  // Decimal numbers such as 0.1 / 0.002 are off by some rounding errors only.
+  // Decimal numbers such as 0.1 / 0.002 are off by a few rounding errors only.
   constexpr double kRelativeRounding = 1e-9;
   if (ratio >= 1.0 && std::abs(ratio * step - duration) <= kRelativeRounding * duration) {
     return static_cast<int>(ratio);
@@ -165,7 +165,7 @@ PeriodPath Simulation::take_period() {
 
 double Simulation::heading() const { return system_.heading >= 0 ? state_[system_.heading] : 0.0; }
 
-/// What acts now is the input of the period in which it was `delay` ago; before the first, none.
+/// The input in effect is that of the period at the time `delay` ago; none before the first.
 void Simulation::choose_input() {
   const long at = steps_ - delay_steps_;
   const long period = inputs_.empty() || at < 0 ? -1 : at / period_steps_;
@@ -184,8 +184,8 @@ void Simulation::apply_forces() {
   if (pull_.path != nullptr) apply_pull();
 }
 
-/// A critically damped spring in each direction, as stiff as the time step allows, with the force
-/// that a free body would need for the spring's own motion.
+/// A critically damped spring in each direction, as stiff as the time step allows, plus the force
+/// that a free body would need to follow the springs' end points.
 void Simulation::apply_pull() {
   const long k = steps_ - pull_start_;
   if (k < 0 || k >= period_steps_) return;
@@ -214,7 +214,8 @@ void Simulation::apply_pull() {
 }
 
 /// Adds the moments that keep a vehicle on the ground level while it is pulled: forces of several
-/// times its weight at one height would turn it over, which no disturbance of its states is to do.
+/// times its weight, all at one height, would overturn it, which a disturbance of its states must
+/// not do.
 void Simulation::keep_level(Eigen::Ref<Eigen::VectorXd> applied) {
   const int joint = model_->body_jntadr[states_.carrier()];
   if (states_.carrier() == 0 || joint < 0 || model_->jnt_type[joint] != mjJNT_FREE) return;
@@ -225,7 +226,7 @@ void Simulation::keep_level(Eigen::Ref<Eigen::VectorXd> applied) {
   Rows solved(2, model_->nv);
   mj_solveM(model_.get(), data_.get(), solved.data(), rows.data(), 2);
   const Eigen::Vector3d up = body_rotation(*data_, states_.carrier()).col(2);
-  const Eigen::Vector2d tilt(up.y(), -up.x());  // up × z: the rotation that brings it upright
+  const Eigen::Vector2d tilt(up.y(), -up.x());  // up × z: the rotation axis that brings it upright
   const Eigen::Map<const Eigen::VectorXd> velocities(data_->qvel, model_->nv);
   const double stiffness = kPullRate / model_->opt.timestep;  // rad/s
   const Eigen::Vector2d acceleration =
@@ -234,7 +235,7 @@ void Simulation::keep_level(Eigen::Ref<Eigen::VectorXd> applied) {
   applied += rows.transpose() * (inertia * acceleration);
 }
 
-/// What the low-level loops ask of the actuators. data: with positions and velocities up to date.
+/// Applies the low-level loops to the controls. data: with positions and velocities up to date.
 void Simulation::control() {
   if (feedbacks_.empty() || feedback_mode_ == Feedback::kOff) {
     controls_.follow(*data_, targets_);
@@ -251,8 +252,8 @@ void Simulation::control() {
 void Simulation::step() {
   check_interrupts();
   choose_input();
-  // MuJoCo's second half of a step knows no Runge-Kutta; forces that depend on the state need the
-  // halves, others do not.
+  // mj_step2 does not support Runge–Kutta. Only forces that depend on the state need the split
+  // step, and the constructor rejects Runge–Kutta for those.
   if (model_->opt.integrator == mjINT_RK4) {
     if (!feedbacks_.empty()) {
       mj_fwdPosition(model_.get(), data_.get());
@@ -273,8 +274,7 @@ void Simulation::step() {
   state_ = states_.read(*data_, state_);
 }
 
-/// A bad position would make the next step start anew from the reference pose and go on as if
-/// nothing had happened.
+/// After a bad position MuJoCo's next step would silently restart from the reference pose.
 void Simulation::check() const {
   for (int kind = 0; kind < mjNWARNING; ++kind) {
     const mjWarningStat& warning = data_->warning[kind];
@@ -327,7 +327,7 @@ SimulationSnapshot Simulation::snapshot() const {
 }
 
 void Simulation::restore(const SimulationSnapshot& snapshot) {
-  mj_resetData(model_.get(), data_.get());  // also forgets warnings, and a stack left by an error
+  mj_resetData(model_.get(), data_.get());  // also clears warnings, and a stack left by an error
   if (solid_ && obstacles_.cols() > 0) solid_->place(obstacles_, *model_, *data_);
   std::ranges::copy(snapshot.qpos, data_->qpos);
   std::ranges::copy(snapshot.qvel, data_->qvel);

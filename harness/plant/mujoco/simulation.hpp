@@ -1,5 +1,5 @@
-// A MuJoCo vehicle with its low-level loops, stepped: what the plant is made of. Private to the
-// MuJoCo plant.
+// The stepped simulation of a MuJoCo vehicle with its low-level loops, on which the plant is built.
+// Private to the MuJoCo plant.
 #pragma once
 
 #include <deque>
@@ -26,24 +26,24 @@ struct MujocoDataDeleter {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
 
-/// Where a vehicle was at each time step of a control period: its position states, and their rates.
+/// The path of a vehicle over a control period: its position states and their rates at each step.
 struct PeriodPath {
   std::vector<Eigen::VectorXd> positions;
   std::vector<Eigen::VectorXd> rates;
 };
 
 /// Forces along the position states during one control period: springs and dampers that pull the
-/// vehicle away from the path that it takes by itself. The free end of the springs moves by the
-/// cubic that begins at rest and ends at `displacement` with the rate `rate`, both in the axes of
-/// the vehicle at the period's beginning. Without a path, none.
+/// vehicle away from its undisturbed path. The free end of the springs follows the cubic that
+/// starts at rest and ends at `displacement` with the rate `rate`, both in the vehicle's axes at
+/// the start of the period. No forces if `path` is null.
 struct PeriodPull {
-  const PeriodPath* path = nullptr;  // outlives the period
+  const PeriodPath* path = nullptr;  // must outlive the period
   Eigen::VectorXd masses;            // apparent, of each position
   Eigen::VectorXd displacement;
   Eigen::VectorXd rate;
 };
 
-/// Everything that the next step depends on, the solver's warm start included.
+/// Everything that the next step depends on, including the solver's warm start.
 struct SimulationSnapshot {
   std::vector<double> qpos;
   std::vector<double> qvel;
@@ -62,15 +62,15 @@ class Simulation {
  public:
   explicit Simulation(const MujocoPlantSetup& setup);
 
-  /// Places the settled vehicle at `state` and starts the time anew.
+  /// Places the settled vehicle at `state` and restarts the time.
   void reset(const Eigen::VectorXd& state);
-  /// The input of the next control period.
+  /// Sets the input of the next control period.
   void start_period(const Eigen::VectorXd& input);
   void set_pull(PeriodPull pull);
-  /// Takes a period, noting its path.
+  /// Simulates a period and records its path.
   [[nodiscard]] PeriodPath take_period();
   void step();
-  /// Adds `change` to the state. The heading is counted on.
+  /// Adds `change` to the state. The heading is not wrapped.
   void add(const Eigen::VectorXd& change);
 
   /// The state after the last step.
@@ -81,27 +81,27 @@ class Simulation {
   [[nodiscard]] int period_steps() const { return period_steps_; }
   [[nodiscard]] double time_step() const { return model_->opt.timestep; }
 
-  /// Whether the vehicle can touch what is solid; at first it cannot.
+  /// Whether the vehicle collides with solid walls and obstacles; initially it does not.
   void set_solid_standing(bool standing);
-  /// Puts solid obstacles that move where they are, see SolidMap::place.
+  /// Moves the moving solid obstacles to `poses`, see SolidMap::place.
   void place_obstacles(const Eigen::Matrix3Xd& poses);
-  /// How it touches what is solid now, see SolidMap; not a number where nothing is solid.
+  /// The present contact force with solids, N, see SolidMap; not a number where nothing is solid.
   [[nodiscard]] double contact_force() const;
 
   [[nodiscard]] SimulationSnapshot snapshot() const;
   void restore(const SimulationSnapshot& snapshot);
 
-  /// The position states and their rates, in the axes of the vehicle where `heading` is that of
-  /// the axes. Brings the data up to date.
+  /// The position states and their rates, in the vehicle's axes for `heading`. Brings the data up
+  /// to date.
   [[nodiscard]] Eigen::VectorXd placement(double heading);
   /// ∂rates/∂velocity states, for the smallest change of the generalised velocities.
   [[nodiscard]] Eigen::MatrixXd rates_by_velocities();
-  /// What the vehicle opposes a force along each position state with: mass or inertia.
+  /// The apparent mass or inertia along each position state.
   [[nodiscard]] Eigen::VectorXd apparent_masses();
   [[nodiscard]] const StateBinding& binding() const { return states_; }
-  /// The heading of the state, 0 where it has none.
+  /// The state's heading; 0 without one.
   [[nodiscard]] double heading() const;
-  /// See Plant::tilt. Balls may roll.
+  /// See Plant::tilt. Balls are excluded.
   [[nodiscard]] double tilt() const;
 
  private:
@@ -139,21 +139,21 @@ class Simulation {
   std::vector<RollingWheel> rolling_;
   std::vector<int> tipping_;  // free joints of bodies that can tip over
   std::optional<SolidMap> solid_;
-  Eigen::Matrix3Xd obstacles_;  // that move; empty until they are placed
+  Eigen::Matrix3Xd obstacles_;  // of moving obstacles; empty until placed
   int period_steps_;
   long delay_steps_;
 
   SimulationSnapshot settled_;
   Eigen::VectorXd state_;
   long steps_ = 0;                      // since reset
-  std::deque<Eigen::VectorXd> inputs_;  // of the last periods, oldest first
-  long first_period_ = 0;               // that inputs_ begins with
-  long active_period_ = -2;             // whose input acts; -1 before the first
+  std::deque<Eigen::VectorXd> inputs_;  // of the latest periods, oldest first
+  long first_period_ = 0;               // of the first entry of inputs_
+  long active_period_ = -2;             // whose input is in effect; -1: none, before the first
   Eigen::VectorXd active_input_;
   Eigen::VectorXd targets_;
   PeriodPull pull_;
-  long pull_start_ = 0;        // step at which its period begins
-  Eigen::MatrixXd pull_axes_;  // of the vehicle then
+  long pull_start_ = 0;        // first step of its period
+  Eigen::MatrixXd pull_axes_;  // the vehicle's axes at that step
 };
 
 }  // namespace qsmpc::harness

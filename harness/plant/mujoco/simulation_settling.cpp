@@ -1,4 +1,4 @@
-// How a Simulation comes to rest on its springs and to the speeds that its loops hold.
+// Settling of a Simulation: on its springs, and to the speeds that its loops hold.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,9 +14,9 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr double kSettledSpeedError = 0.01;  // relative
-constexpr double kFeedbackError = 0.05;      // relative; the loop goes on correcting it
+constexpr double kFeedbackError = 0.05;      // relative; the loop continues to correct it
 
-/// Whether the body is made of balls, which have no side that is up.
+/// Whether the body consists of balls only, which have no upright orientation.
 bool is_ball(const mjModel& model, int body) {
   const int first = model.body_geomadr[body];
   const int count = model.body_geomnum[body];
@@ -28,8 +28,8 @@ bool is_ball(const mjModel& model, int body) {
 
 }  // namespace
 
-// With loops that hold a speed, two runs: the first shows at which speed the vehicle rolls
-// steadily, and the second settles it with the command corrected for that.
+// With speed-holding loops, two runs: the first measures the vehicle's steady speed, and the second
+// settles it with the command corrected for that.
 void Simulation::settle(double duration) {
   mj_resetData(model_.get(), data_.get());
   mj_forward(model_.get(), data_.get());
@@ -54,8 +54,8 @@ void Simulation::settle(double duration) {
   settled_ = snapshot();
 }
 
-/// At rest first: from there each loop's actuators are tried where its response is not known. Then
-/// all loops bring the vehicle to their goals.
+/// Starts at rest, where each loop with an unknown response is tested. Then all loops bring the
+/// vehicle to their goals.
 void Simulation::settle_with_feedback(double duration) {
   feedback_mode_ = Feedback::kOff;
   run_idle(duration);
@@ -79,8 +79,8 @@ void Simulation::settle_with_feedback(double duration) {
   }
 }
 
-/// Half the difference of what the test command and its opposite do to the velocity within a time
-/// constant, by unit of the command and by time.
+/// Half the difference in velocity that the test command and its opposite cause within a time
+/// constant, per unit of the command and of time.
 double Simulation::measured_response(const FeedbackBinding& feedback) {
   constexpr double kNoResponse = 1e-9;
   const SimulationSnapshot rest = snapshot();
@@ -145,7 +145,7 @@ double Simulation::forward_speed(int body) const {
   return level > 0.0 ? (forward.x() * motion[3] + forward.y() * motion[4]) / level : 0.0;
 }
 
-/// Moves the body forward, and spins the wheels along.
+/// Sets the body's forward speed, and spins the wheels accordingly.
 void Simulation::set_forward_speed(int body, double speed) {
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> jacobian(3, model_->nv);
   mj_jacBody(model_.get(), data_.get(), jacobian.data(), nullptr, body);

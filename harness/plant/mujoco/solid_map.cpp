@@ -15,17 +15,17 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr const char* kSolidName = "qsmpc_solid_";    // before a number
-constexpr const char* kMovingName = "qsmpc_moving_";  // the same, of a body
+constexpr const char* kSolidName = "qsmpc_solid_";    // followed by a number
+constexpr const char* kMovingName = "qsmpc_moving_";  // the same, for a body
 constexpr double kFarAway = 1000.0;                   // m
 constexpr double kHalfHeight = 5.0;                   // m, about the ground
-constexpr int kSolidContacts = 500;                   // at once
+constexpr int kSolidContacts = 500;                   // simultaneously
 constexpr int kRowsPerContact = 4;                    // of a pyramidal friction cone
-constexpr int kLowestBit = 8;  // others are more likely to be the model's own
+constexpr int kLowestBit = 8;  // lower bits are more likely to be used by the model
 
 // Softer than wheels on the ground: a disturbance can put the vehicle 0.3 m deep into a block, and
-// is not to be answered by forces that throw it into the air. Highest priority: the vehicle's own
-// stiffness and friction are meant for the ground.
+// the response must not throw it into the air. Highest priority: the vehicle's own stiffness and
+// friction are meant for the ground.
 constexpr const char* kSolidContact =
     R"(contype="0" conaffinity="0" condim="3" priority="1000" friction="0.5 0.005 0.0001" )"
     R"(solref="0.05 1" solimp="0.9 0.95 0.001 0.5 2" margin="0" gap="0" mass="0" rgba="0 0 0 0")";
@@ -50,7 +50,7 @@ bool is_in_plane(const controller::Box& box, const models::SystemDescription& sy
 
 class SolidWriter {
  public:
-  /// `normal` leads out of what is solid.
+  /// `normal` points away from the solid side.
   void plane(const Eigen::Vector2d& point, const Eigen::Vector2d& normal) {
     add(fmt::format(R"(type="plane" size="1 1 1" pos="{} {} 0" zaxis="{} {} 0")", point.x(),
                     point.y(), normal.x(), normal.y()));
@@ -77,7 +77,7 @@ class SolidWriter {
   void operator()(const controller::EllipseShape& ellipse) { prisms(ellipse); }
   void operator()(const controller::PolygonShape& polygon) { prisms(polygon); }
 
-  /// On a body of its own, whose place is the middle of the shape.
+  /// On its own body, positioned at the centre of the shape.
   void moving(const controller::PlanarShape& shape) {
     const Eigen::Vector2d centre = controller::shape_centre(shape);
     solids_.geoms += fmt::format("<body name=\"{}{}\" mocap=\"true\" pos=\"{} {} 0\">\n",
@@ -93,8 +93,8 @@ class SolidWriter {
     for (const controller::ConvexPart& part : controller::convex_parts(shape)) prism(part.corners);
   }
 
-  /// MuJoCo takes the convex hull of a mesh's vertices, of which it has 32-bit numbers: they are
-  /// about the middle.
+  /// MuJoCo takes the convex hull of a mesh's vertices. They are relative to their mean, since
+  /// MuJoCo stores them in single precision.
   void prism(const Eigen::Matrix2Xd& corners) {
     const Eigen::Vector2d middle = corners.rowwise().mean();
     std::string vertices;
@@ -127,7 +127,7 @@ int spare_bit(const NamedModel& named) {
   for (int geom = 0; geom < model.ngeom; ++geom) {
     used |= static_cast<unsigned>(model.geom_contype[geom] | model.geom_conaffinity[geom]);
   }
-  constexpr int kBits = 31;  // MuJoCo's are signed
+  constexpr int kBits = 31;  // MuJoCo's integers are signed
   for (int bit = kBits - 1; bit >= kLowestBit; --bit) {
     if ((used & (1U << bit)) == 0) return 1 << bit;
   }

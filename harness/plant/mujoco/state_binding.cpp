@@ -21,10 +21,10 @@ constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
 // velocity in body axes (3).
 constexpr int kQuaternion = 3;
 constexpr int kAngularVelocity = 3;
-// Of the steps that bring positions where they belong. Moving a free joint takes one.
+// Steps that bring positions to their goal. Moving a free joint takes one.
 constexpr int kMostMoves = 20;
 constexpr double kPlaced = 1e-10;  // m or rad
-// Rows of a Jacobian are dependent below this pivot, relative to the largest.
+// Rows of a Jacobian are dependent if a pivot, relative to the largest, is below this.
 constexpr double kRankThreshold = 1e-9;
 
 using RowJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
@@ -274,7 +274,8 @@ void StateBinding::move(mjData& data, const Eigen::VectorXd& change) const {
   }
 }
 
-/// Velocities after a turn: that of the carrier turns along, then the states' change is added.
+/// Updates the velocities after a turn: the carrier's velocity turns with it, then the change of
+/// the states is added.
 void StateBinding::accelerate(mjData& data, const Eigen::VectorXd& change, double turn,
                               const Eigen::Vector3d& velocity) const {
   Eigen::Map<Eigen::VectorXd> generalised(data.qvel, model_.nv);

@@ -1,4 +1,4 @@
-// The states of a system in a MuJoCo model: read, and put there. Private to the MuJoCo plant.
+// Reading and writing a system's states in a MuJoCo model. Private to the MuJoCo plant.
 #pragma once
 
 #include <vector>
@@ -11,46 +11,46 @@
 
 namespace qsmpc::harness {
 
-/// Writing goes through Jacobians: positions are moved along, and velocities changed by, the
-/// smallest change of the generalised coordinates that does it. For a free joint, or for joints in
-/// the plane, that is the vehicle's own motion in the plane; height, roll, pitch and wheels stay.
-/// States that are read from sensors cannot be written.
+/// Writing uses Jacobians: positions are moved, and velocities changed, by the smallest change of
+/// the generalised coordinates that has the desired effect. For a free joint, or for joints in the
+/// plane, that is the vehicle's own motion in the plane; height, roll, pitch and wheels are
+/// unchanged. States that are read from sensors cannot be written.
 class StateBinding {
  public:
   /// data: after mj_forward at the model's reference pose. Throws InputError on a name that the
-  /// model does not have, a joint that is not slide or hinge, a sensor without that many numbers,
-  /// and states of which one determines another.
+  /// model does not have, a joint that is neither slide nor hinge, a sensor with too few numbers,
+  /// and states that determine one another.
   StateBinding(const NamedModel& named, mjData& data, const PlantMapping& mapping,
                const models::SystemDescription& system);
 
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(states_.size()); }
 
-  /// The state (size()), with angles of bodies nearest to those in `near`, so that turns are
-  /// counted. data: with positions and velocities up to date, but for joints and for bodies on a
-  /// free joint, which are read from the generalised coordinates.
+  /// The state (size()), with angles of bodies unwrapped to be nearest to those in `near`. data:
+  /// with positions and velocities up to date, except that joints and bodies on a free joint are
+  /// read from the generalised coordinates.
   [[nodiscard]] Eigen::VectorXd read(const mjData& data, const Eigen::VectorXd& near) const;
 
-  /// Adds `change` to the state, and turns the velocity of the body that carries the heading along
-  /// with it. data: up to date before, and after. Throws MujocoError where that cannot be done.
+  /// Adds `change` to the state, and turns the velocity of the body that carries the heading with
+  /// it. data: up to date before and after. Throws MujocoError where that is impossible.
   void add(mjData& data, const Eigen::VectorXd& change) const;
 
   /// Whether `state` can be written.
   [[nodiscard]] bool is_writable(Eigen::Index state) const;
-  /// Whether a velocity is among the states.
+  /// Whether any state is a velocity.
   [[nodiscard]] bool has_velocity() const;
-  /// The body whose heading, or else whose first position, is a state; 0 where there is none.
+  /// The body whose heading, or else whose first position, is a state; 0 without one.
   [[nodiscard]] int carrier() const { return carrier_; }
 
   /// Rows ∂position/∂(generalised coordinates) of the states that are positions, in their order.
   /// data: with positions up to date.
   [[nodiscard]] Eigen::MatrixXd position_jacobian(mjData& data) const;
-  /// The same for ∂velocity/∂(generalised velocities), and the states that are velocities.
+  /// The same for the velocity states: ∂velocity/∂(generalised velocities).
   [[nodiscard]] Eigen::MatrixXd velocity_jacobian(mjData& data) const;
   [[nodiscard]] const std::vector<Eigen::Index>& positions() const { return positions_; }
   [[nodiscard]] const std::vector<Eigen::Index>& velocities() const { return velocities_; }
 
  private:
-  /// What is read, resolved.
+  /// The resolved kind of a state.
   enum class Kind {
     kJointPosition,
     kJointVelocity,
@@ -69,8 +69,8 @@ class StateBinding {
   };
   struct State {
     Kind kind;
-    int body;      ///< of a body's quantity, and of a joint
-    int address;   ///< of a joint in qpos, or of a sensor's number
+    int body;      ///< of a body's quantity, or of a joint
+    int address;   ///< of a joint in qpos, or of a sensor's data
     int dof;       ///< of the joint, or the first of the body's free joint, in qvel
     int free_pos;  ///< of the body's free joint in qpos, or -1
     double gain;
@@ -88,8 +88,8 @@ class StateBinding {
 
   const mjModel& model_;
   std::vector<State> states_;
-  std::vector<Eigen::Index> positions_;   // states that can be moved
-  std::vector<Eigen::Index> velocities_;  // states that can be accelerated
+  std::vector<Eigen::Index> positions_;   // states that can be written as positions
+  std::vector<Eigen::Index> velocities_;  // states that can be written as velocities
   int carrier_ = 0;
   Eigen::Index heading_ = -1;  // the state that is the carrier's heading
 };

@@ -46,11 +46,11 @@ void vary_mass(mjModel& model, double factor) {
   }
 }
 
-/// The first coordinate of an element's place, of the places of all of them.
+/// The x coordinate of an element, in the array of all elements' positions.
 double& place_x(double* places, int element) { return places[std::ptrdiff_t{3} * element]; }
 
-/// Moves the bodies of the steered wheels away from the fixed axle, which must be beside them in
-/// the tree of bodies.
+/// Moves the bodies of the steered wheels away from the fixed axle, whose bodies must be their
+/// siblings in the body tree.
 bool stretch(const NamedModel& named, mjModel& model, const AckermannLoop& loop, double factor) {
   double axle = 0.0;
   for (const std::string& name : loop.fixed_axle) {

@@ -1,4 +1,4 @@
-// A vehicle that is not quite the one in its file.
+// Variation of a vehicle relative to its file.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -10,10 +10,9 @@
 namespace qsmpc::harness {
 
 /// Changes the friction of all geoms, the mass and inertia of all bodies, and the distance between
-/// the axles that `mapping` names (steered wheels before the fixed axle; sites of axle forces about
-/// their body's origin). Forces that the plant applies itself are not in the model: see their
-/// scale_friction. Throws InputError where the vehicle has nothing that a factor other than 1 could
-/// change.
+/// the axles that `mapping` names (steered wheels ahead of the fixed axle; sites of axle forces
+/// about their body's origin). Forces that the plant applies itself are not in the model: see their
+/// scale_friction. Throws InputError where a factor other than 1 has nothing to act on.
 void vary_vehicle(const NamedModel& named, mjModel& model, const PlantMapping& mapping,
                   const PlantVariation& variation);
 

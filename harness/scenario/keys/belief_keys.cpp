@@ -1,4 +1,4 @@
-// The keys of what is uncertain: the initial state, the noise, and what the planner makes of it.
+// The keys of the uncertainties: the initial state, the noise and the estimator.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ std::string default_estimator(const Scenario& scenario) {
   return has_sensor_noise(scenario) ? "last_measurement" : "exact";
 }
 
-/// Of what is drawn once an episode.
+/// The standard deviation of a factor drawn once per episode.
 ScenarioKey deviation_key(const char* name, const std::string& factor_of,
                           double& (*member)(Scenario& scenario)) {
   return {.about = {.name = name,

@@ -1,4 +1,4 @@
-// The keys of controllers that keep a chance constraint of the literature, and of the shield.
+// The keys of the controllers with a chance constraint from the literature, and of the shield.
 #include <algorithm>
 #include <initializer_list>
 #include <string>
@@ -31,7 +31,7 @@ bool keeps_chance_constraint(const Scenario& scenario) {
                      [&](const auto& entry) { return entry.name == kind; });
 }
 
-/// Whether its paths are sampled, so that inputs can answer to their noise.
+/// Whether the controller samples paths, so that inputs can respond to their noise.
 bool samples_paths(const Scenario& scenario) {
   const auto& known = controller::chance_constraints();
   return std::any_of(known.begin(), known.end(), [&](const auto& entry) {

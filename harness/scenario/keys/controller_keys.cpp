@@ -22,17 +22,17 @@ namespace {
 constexpr WholeValue kHorizonRange{1, kMostStages};
 constexpr WholeValue kIterationsRange{1, 100'000};
 constexpr WholeValue kThreadsRange{1, 256};
-// s; the longest is well within what a clock can count.
+// s; the maximum is well within a clock's range.
 constexpr NumberRange kDeadlineRange{.least = 0.0, .most = 1e6, .above_least = true};
 
-/// A key that has no effect under the other settings may still hold its default, which stands in
-/// every resolved scenario.
+/// A key without effect under the other settings may still hold its default, which every resolved
+/// scenario contains.
 const Scenario::Controller& defaults() {
   static const Scenario::Controller controller;
   return controller;
 }
 
-/// Recorded scenarios may name what only a program can hand over.
+/// Recorded scenarios may name a controller that only a calling program can supply.
 void check_kind(const ScenarioReading& reading, Section& section) {
   if (!reading.lookup.must_exist || reading.scenario.controller.kind != kObjectController) return;
   section.note("kind",
@@ -47,7 +47,7 @@ void check_lqr_about(const ScenarioReading& reading, Section& section) {
   }
 }
 
-/// The way is looked for in the plane of position, within bounds.
+/// The guide's search needs the plane of position, within bounds.
 void check_guide(const ScenarioReading& reading, Section& section) {
   const Scenario::Controller& controller = reading.scenario.controller;
   if (controller.guide == defaults().guide) return;
@@ -91,7 +91,7 @@ void check_input_bounding(const ScenarioReading& reading, Section& section) {
   }
 }
 
-/// A weight of the penalties. Unless given, it is 0 where limits of the risk are kept instead.
+/// A weight of the penalties. Its default is 0 where risk limits are kept instead.
 void read_weight(ScenarioReading& reading, Section& section, const KeyDescription& about,
                  double& weight) {
   const std::vector<controller::ControllerEntry>& known = controller::controllers();
@@ -130,7 +130,7 @@ void read_input_bounds(ScenarioReading& reading, Section& section, const KeyDesc
   reading.scenario.controller.input_upper = box.upper;
 }
 
-/// Algorithm 2 of the thesis knows boxes alone.
+/// Algorithm 2 of the thesis is defined for boxes only.
 void check_penalty_shape(const ScenarioReading& reading, Section& section) {
   if (reading.scenario.controller.penalty.shape != "thesis") return;
   const std::vector<controller::Obstacle>& obstacles = reading.scenario.safe_set.obstacles;

@@ -1,4 +1,4 @@
-// Keys that have no effect under the scenario's other settings.
+// Checks for keys that have no effect under the scenario's other settings.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace qsmpc::harness {
 
-/// Notes a value that would do nothing, unless it is the usual one, which stands in every resolved
-/// scenario. `condition`: what would give it an effect, e.g. "controller.kind: shield".
+/// Notes a value that would have no effect, unless it is the usual one, which every resolved
+/// scenario contains. `condition`: what would give it an effect, e.g. "controller.kind: shield".
 template <class Value>
 void check_has_effect(Section& section, const char* key, const Value& value, const Value& usual,
                       bool has_effect, const std::string& condition) {

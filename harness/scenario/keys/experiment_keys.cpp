@@ -1,11 +1,11 @@
-// The keys of the experiment itself: its name, its clock and its end.
+// The keys of the experiment itself: name, seed, control period and end.
 #include "harness/scenario/keys/scenario_key.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kLongestDescription = 500;  // bytes; one line
-constexpr NumberRange kPeriodRange{1e-4, 10.0};   // s, from a simulator's step at its finest
+constexpr NumberRange kPeriodRange{1e-4, 10.0};   // s, from the finest simulator step
 constexpr WholeValue kStepsRange{1, 1'000'000};
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What a key of a file is, as plain data: name, values, unit, default and words. Readers take
-// ranges and names from it; the tables of the documentation and the JSON Schema are made from it.
+// The description of a file's key as plain data: name, values, unit, default and words. It is the
+// source of the readers' ranges and names, the documentation's tables and the JSON Schema.
 //
 //   const KeyDescription horizon{.name = "horizon",
 //                                .values = {WholeValue{1, 1000}},
@@ -20,25 +20,25 @@ namespace qsmpc::harness {
 
 struct KeyDescription;
 
-/// Names that depend on the scenario's system; `kFree` are any.
+/// Names that depend on the scenario's system; `kFree` allows any name.
 enum class NameFamily { kNone, kStates, kAngles, kInputs, kParameters, kFree };
 
-/// A number of items that depends on the scenario's system; `kAny` does not.
+/// A number of items that depends on the scenario's system; `kAny` is independent of it.
 enum class Dimension { kAny, kStates, kInputs };
 
-/// Anything that YAML can say.
+/// Any YAML value.
 struct AnyValue {};
-/// A scalar as it is written.
+/// A scalar, verbatim.
 struct TextValue {
   std::size_t longest = kLongestPath;  ///< bytes
-  std::string what{};     ///< "a name": what errors call one that may not be empty; else it may
+  std::string what{};     ///< its noun in errors, e.g. "a name", if it may not be empty
   std::string pattern{};  ///< regular expression, for the schema only
 };
 /// One of `known`.
 struct NameValue {
   std::vector<std::string> known{};
 };
-/// A name that the scenario's system has.
+/// A name that is defined by the scenario's system.
 struct SystemNameValue {
   NameFamily family = NameFamily::kNone;
 };
@@ -56,11 +56,11 @@ struct VectorValue {
   std::size_t length = 0;  ///< where the size is kAny; 0: any
   NumberRange range{};
 };
-/// A list of rows, or of numbers: a diagonal, or the only row.
+/// A list of rows; or a list of numbers, which is a diagonal or the only row.
 struct MatrixValue {
   Dimension rows = Dimension::kStates;
   Dimension cols = Dimension::kStates;
-  bool is_identity_by_default = false;  ///< else zero; of a symmetric, positive semidefinite one
+  bool is_identity_by_default = false;  ///< else zero; if symmetric, positive semidefinite
 };
 /// [lower, upper].
 struct IntervalValue {
@@ -72,7 +72,7 @@ struct MappingValue {
 struct ListLimits {
   std::size_t least = 0;
   std::size_t most = 0;  ///< 0: any number
-  bool once = false;     ///< whether no item may be there twice
+  bool once = false;     ///< whether items must be distinct
 };
 struct ListValue {
   std::vector<KeyDescription> item;  ///< exactly one, without a name
@@ -85,17 +85,17 @@ using KeyValue =
 
 struct KeyDescription {
   /// As in the file. A word in capitals stands for each name of `family`; without a name, the keys
-  /// of its mapping stand beside the others.
+  /// of the mapping stand beside the other keys.
   std::string name{};
   NameFamily family = NameFamily::kNone;
-  std::vector<KeyValue> values{};  ///< usually one, else any of them
-  /// Markdown, for tables and editors. "{range}", "{names}" and "{longest}" stand for what the
-  /// values say; a range that is not mentioned is appended.
+  std::vector<KeyValue> values{};  ///< usually one; otherwise alternatives
+  /// Markdown, for tables and editors. "{range}", "{names}" and "{longest}" are replaced by the
+  /// limits of `values`; a range that is not mentioned is appended.
   std::string words{};
   std::string see{};  ///< Markdown link, for tables only: "[below](#gains)"
   std::string unit{};
-  std::string fallback{};        ///< the default, as YAML; empty where there is no single one
-  std::string fallback_words{};  ///< instead of it in tables
+  std::string fallback{};        ///< the default, as YAML; empty where there is no single default
+  std::string fallback_words{};  ///< shown instead of `fallback` in tables
   bool required = false;
 };
 
@@ -105,7 +105,7 @@ template <class Value>
   return std::get<Value>(key.values.front());
 }
 
-/// The mapping that `key` may hold; nullptr if it is not one.
+/// The mapping that `key` may hold; nullptr if it cannot hold one.
 [[nodiscard]] inline const MappingValue* mapping_of(const KeyDescription& key) {
   for (const KeyValue& value : key.values) {
     if (const auto* mapping = std::get_if<MappingValue>(&value)) return mapping;

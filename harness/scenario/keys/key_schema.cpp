@@ -27,10 +27,10 @@ void put_range(Json& schema, const NumberRange& range) {
   if (std::isfinite(range.most)) schema["maximum"] = range.most;
 }
 
-/// What one kind of value must be.
+/// The schema of each kind of value.
 struct ValueSchema {
   Json operator()(const AnyValue& /*any*/) const { return Json::object(); }
-  /// A scalar of any kind is a text: YAML takes 2024 for a number.
+  /// Any scalar is valid as text: YAML parses 2024 as a number.
   Json operator()(const TextValue& text) const {
     Json schema{{"type", {"string", "number", "boolean"}}, {"maxLength", text.longest}};
     if (!text.what.empty()) schema["minLength"] = 1;
@@ -38,7 +38,7 @@ struct ValueSchema {
     return schema;
   }
   Json operator()(const NameValue& name) const { return {{"enum", name.known}}; }
-  /// Which ones a system has is said by the conditions; one of the user's may have any.
+  /// The conditions list the names of each system; a user-defined system may have any.
   Json operator()(const SystemNameValue& /*name*/) const { return {{"type", "string"}}; }
   Json operator()(const NumberValue& number) const {
     Json schema{{"type", "number"}};
@@ -75,7 +75,8 @@ struct ValueSchema {
   }
 };
 
-/// `second` beside `first`, whose types differ: each has words of the schema for its own type only.
+/// The union of `first` and `second`, whose types differ: the keywords of each apply only to its
+/// own type.
 Json either(Json first, const Json& second) {
   if (first.empty()) return second;
   Json types = Json::array();
@@ -94,7 +95,7 @@ Json either(Json first, const Json& second) {
   return first;
 }
 
-/// A default that is a single value, as JSON; null for a text.
+/// The default, a single value, as JSON; a string unless the key holds a number or a flag.
 Json default_json(const KeyDescription& key) {
   const KeyValue& value = key.values.front();
   const bool is_plain = std::holds_alternative<NumberValue>(value) ||
@@ -142,7 +143,7 @@ void put_keys(Json& schema, const std::vector<KeyDescription>& keys) {
       for (const std::string& name : names_of_family(key.family)) {
         schema["properties"][name] = key_schema(key);
       }
-      // A system of the user's has other ones; which ones another has, the conditions say.
+      // User-defined systems have other names; the conditions restrict those of the known systems.
       schema["additionalProperties"] = key_schema(key);
     } else {
       schema["properties"][key.name] = key_schema(key);

@@ -15,13 +15,13 @@ struct SchemaHead {
   std::string description;
 };
 
-/// The schema of a mapping with `keys`, which are all that it takes. Where names and sizes depend
-/// on the system, and `keys` has `model.system`, they are those of any system, and by conditions
-/// those of the system that the file names.
+/// The schema of a mapping that takes exactly `keys`. Where names and sizes depend on the system
+/// and `keys` contains `model.system`, the schema accepts those of any system and adds conditions
+/// that restrict them to those of the system that the file names.
 [[nodiscard]] nlohmann::ordered_json json_schema(const SchemaHead& head,
                                                  const std::vector<KeyDescription>& keys);
 
-/// That of a scenario file.
+/// The schema of a scenario file.
 [[nodiscard]] nlohmann::ordered_json scenario_schema();
 
 }  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kAnyControlPeriod = 0.1;  // s; what a table says does not depend on it
+constexpr double kAnyControlPeriod = 0.1;  // s; the tables do not depend on it
 
 struct KeyRow {
   std::string path;
@@ -42,7 +42,7 @@ void add_rows(std::vector<KeyRow>& rows, const std::vector<KeyDescription>& keys
   for (const KeyDescription& key : keys) {
     const MappingValue* mapping = mapping_of(key);
     if (key.name.empty()) {
-      // Keys with a table elsewhere share a row.
+      // Keys whose table is elsewhere share a row.
       std::string paths;
       for (const KeyDescription& inner : mapping->keys) {
         paths += (paths.empty() ? "" : "`, `") + folder + inner.name;
@@ -62,7 +62,7 @@ std::string printed_number(double value) {
   return fmt::format("{}{}", value < 0.0 ? "−" : "", std::abs(value));
 }
 
-/// The same with six digits, for what may be a part of π.
+/// The same with six digits, for a value that may be a fraction of π.
 std::string printed_bound(double value) {
   return fmt::format("{}{:.6g}", value < 0.0 ? "−" : "", std::abs(value));
 }

@@ -30,7 +30,7 @@ std::string number_words(double value) {
   return fmt::format("{}", value);
 }
 
-/// 100000 as "100 000", and the largest numbers that are stored as powers.
+/// 100000 as "100 000"; the largest representable numbers as powers.
 std::string whole_words(std::uint64_t value) {
   if (value == std::numeric_limits<std::uint64_t>::max()) return "2⁶⁴ − 1";
   if (value == static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
@@ -67,7 +67,7 @@ struct RangeWords {
   }
 };
 
-/// The names that a key takes; nullptr if it takes none.
+/// The names that a key accepts; nullptr if it accepts none.
 const std::vector<std::string>* names_of_key(const KeyDescription& key) {
   for (const KeyValue& value : key.values) {
     if (const auto* name = std::get_if<NameValue>(&value)) return &name->known;

@@ -1,4 +1,4 @@
-// What a description says in words.
+// The descriptions of keys in words.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace qsmpc::harness {
 
-/// The numbers that `key` may hold, e.g. "1 to 1000" or "> 0, up to 10⁶"; empty where there is no
-/// limit.
+/// The range of numbers that `key` may hold, e.g. "1 to 1000" or "> 0, up to 10⁶"; empty without
+/// limits.
 [[nodiscard]] std::string range_words(const KeyDescription& key);
 
-/// The words of `key` with its range, names and longest text filled in.
+/// The words of `key` with its range, names and maximum length filled in.
 [[nodiscard]] std::string filled_words(const KeyDescription& key);
 
 }  // namespace qsmpc::harness

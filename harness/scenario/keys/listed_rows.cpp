@@ -9,7 +9,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// The numbers of a row; where one is none, nothing, and which it is in `found`.
+/// The numbers of a row; if an entry is not a number, nothing, and the entry in `found`.
 std::optional<Eigen::VectorXd> numbers_of(const YamlNode& row, std::string& found) {
   Eigen::VectorXd numbers(std::ssize(row.items));
   for (Eigen::Index k = 0; k < numbers.size(); ++k) {
@@ -30,7 +30,7 @@ std::optional<std::vector<Eigen::VectorXd>> read_rows(Section& section, const st
                                                       const RowForm& form) {
   const std::size_t count = section.list_size(key);
   const YamlNode& list = *section.tree(key);
-  if (list.kind != YamlNode::Kind::kList) return std::nullopt;  // noted
+  if (list.kind != YamlNode::Kind::kList) return std::nullopt;  // already noted
   if (count < form.least || count > form.most) {
     section.note(key,
                  fmt::format("{} to {} {}, {} each", form.least, form.most, form.name, form.words),
@@ -43,7 +43,7 @@ std::optional<std::vector<Eigen::VectorXd>> read_rows(Section& section, const st
     const YamlNode& row = list.items[i];
     const bool is_row = row.kind == YamlNode::Kind::kList &&
                         std::ranges::find(form.widths, row.items.size()) != form.widths.end();
-    std::string found;  // the row itself where it is none
+    std::string found;  // the entry that is not a number, else the row itself
     const auto numbers = is_row ? numbers_of(row, found) : std::nullopt;
     if (!numbers) {
       section.note_item(key, i, form.words, std::move(found));

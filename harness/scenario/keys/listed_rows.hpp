@@ -12,23 +12,23 @@
 
 namespace qsmpc::harness {
 
-/// What rows may be.
+/// The allowed form of rows.
 struct RowForm {
-  std::vector<std::size_t> widths;  ///< how many numbers a row may have
-  std::string words;                ///< what that means: "[x, y]"
-  std::string name = "places";      ///< what the rows are, for errors about their number
-  std::size_t least = 1;            ///< how many rows
+  std::vector<std::size_t> widths;  ///< the allowed numbers of entries per row
+  std::string words;                ///< the same in words: "[x, y]"
+  std::string name = "places";      ///< the plural noun for the rows in errors about their number
+  std::size_t least = 1;            ///< the minimum number of rows
   std::size_t most = 1000;
-  bool alike = true;  ///< whether all rows have as many numbers as the first
+  bool alike = true;  ///< whether all rows must have the same length as the first
 };
 
-/// The rows under `key`, which is there, of finite numbers; nothing, and a problem noted with the
-/// row, where they are something else.
+/// The rows of finite numbers under `key`, which must be present; nothing, and a noted problem with
+/// its row, where they are invalid.
 [[nodiscard]] std::optional<std::vector<Eigen::VectorXd>> read_rows(Section& section,
                                                                     const std::string& key,
                                                                     const RowForm& form);
 
-/// Rows that are alike as a matrix, n x width; empty without a row.
+/// Rows of equal length as a matrix, n x width; empty without rows.
 [[nodiscard]] Eigen::MatrixXd matrix_of(const std::vector<Eigen::VectorXd>& rows);
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-// The keys of the map: what is safe, and where to go.
+// The keys of the map: the safe set and the target.
 #include <algorithm>
 #include <utility>
 

@@ -1,4 +1,4 @@
-// The keys of the system: one of the program's, or of the user's.
+// The keys of the system, built in or user-defined.
 #include <stdexcept>
 #include <utility>
 
@@ -12,7 +12,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// make_dynamics with its refusal, if any, as text.
+// make_dynamics, with its exception, if any, as text.
 std::unique_ptr<const models::Dynamics> try_dynamics(const Scenario::Model& model, double time_step,
                                                      std::string& refusal) {
   try {
@@ -23,7 +23,7 @@ std::unique_ptr<const models::Dynamics> try_dynamics(const Scenario::Model& mode
   }
 }
 
-// A refusal is tied to the parameter that causes it by trying each alone among the defaults.
+// Attributes an error to the parameter that causes it, by trying each alone among the defaults.
 void read_parameters(ScenarioReading& reading, Section& section, const models::SystemEntry& entry) {
   const double time_step = reading.scenario.time_step;
   Scenario::Model& model = reading.scenario.model;
@@ -53,7 +53,7 @@ void read_system(ScenarioReading& reading, Section& section) {
     read_parameters(reading, section, entry);
     return;
   }
-  for (const std::string& key : section.keys()) (void)section.holds_text(key);  // of what system?
+  for (const std::string& key : section.keys()) (void)section.holds_text(key);  // system not known
 }
 
 void read_model(ScenarioReading& reading, Section& root, const KeyDescription& about) {
@@ -68,7 +68,7 @@ void read_model(ScenarioReading& reading, Section& root, const KeyDescription& a
   section.refuse_unread();
 }
 
-/// No certificate can hold a limit of the risk where nothing is known of derivatives.
+/// Without derivatives, no certificate can keep a risk limit.
 void check_derivatives(const ScenarioReading& reading, Section& root) {
   const Scenario::Model& model = reading.scenario.model;
   if (!model.own || model.own->differentiable || !reading.scenario.risk.any()) return;

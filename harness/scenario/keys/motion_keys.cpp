@@ -22,7 +22,7 @@ constexpr NumberRange kSpeeds{.least = 1e-6, .most = models::kFastestWay};
 
 constexpr const char* kWayKeys[] = {"velocity", "path", "route", "speed"};
 
-/// A pair (along, across) of the motion: a key that takes one number for both.
+/// A pair (along, across) of motion values: a key that also takes one number for both.
 struct PairKey {
   const char* name;
   const char* words;
@@ -51,7 +51,7 @@ Eigen::Vector2d read_pair(Section& motion, const char* key) {
   return *pair;
 }
 
-/// The rows under `key`, of `columns` numbers.
+/// The rows under `key`, with `columns` numbers each.
 std::optional<Eigen::MatrixXd> read_way_rows(Section& section, const char* key, std::size_t columns,
                                              const char* row) {
   const auto read =
@@ -83,9 +83,9 @@ void read_path(Section& section, IntendedWay& way) {
   }
 }
 
-/// What `section` says of one way.
+/// The values of one way, read from `section`.
 IntendedWay read_way(Section& section, const Eigen::Vector2d& centre) {
-  // Known keys, so that one that is misspelt is told of them.
+  // Registers the keys, so that an error about a misspelt one suggests them.
   for (const char* key : kWayKeys) (void)section.tree(key);
   IntendedWay way{.points = {{.place = centre}}};
   if (section.has("route") && section.has("path")) {
@@ -117,7 +117,7 @@ std::vector<IntendedWay> read_ways(Section& motion, const Eigen::Vector2d& centr
   std::vector<IntendedWay> ways;
   for (std::size_t i = 0; i < count; ++i) {
     Section item = motion.item("ways", i);
-    if (!item.present()) continue;  // noted
+    if (!item.present()) continue;  // already noted
     item.require("probability", "its probability");
     const double probability =
         item.number("probability", 1.0, {.least = 0.0, .most = 1.0, .above_least = true});

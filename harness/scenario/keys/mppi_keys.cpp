@@ -1,4 +1,4 @@
-// The keys of the controllers that sample, `mppi` and `risk_mppi`.
+// The keys of the sampling controllers, `mppi` and `risk_mppi`.
 #include <optional>
 #include <string>
 #include <utility>
@@ -52,7 +52,7 @@ auto& member_of(Scenario& scenario) {
   return scenario.controller.mppi.*kMember;
 }
 
-/// The key of a number that may be left to the controller.
+/// The key of a number whose default the controller chooses.
 template <std::optional<double> MppiSettings::*kMember>
 ScenarioKey optional_key(const KeyDescription& about) {
   return {.about = about,
@@ -155,7 +155,7 @@ std::vector<ScenarioKey> perturbation_keys() {
        .check =
            [](const ScenarioReading& reading, Section& section) {
              check_is_sampling<&MppiSettings::smoothing>(reading, section, "smoothing");
-             // Through three points the parabola is exact.
+             // Through three points the parabola is an interpolation.
              if (reading.scenario.controller.mppi.smoothing == 1) {
                section.note("smoothing", "0, or at least 2");
              }

@@ -1,4 +1,4 @@
-// The keys of obstacles: in the scenario itself, in a file of their own, and in the plant's model.
+// The keys of obstacles: in the scenario itself, in a separate file, and in the plant's model.
 #include <iterator>
 #include <utility>
 
@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace {
 
-/// What may still be added to the obstacles of `reading`.
+/// The number of obstacles that may still be added.
 ObstacleReading reading_of_more(ScenarioReading& reading) {
   return {.system = reading.system(),
           .problems = reading.problems,
@@ -54,7 +54,7 @@ void read_from_model(ScenarioReading& reading, Section& section, const KeyDescri
   }
 }
 
-/// The resolved scenario holds what was read.
+/// The resolved scenario contains the obstacles themselves.
 std::optional<std::string> not_written(const Scenario& /*scenario*/,
                                        const models::SystemDescription& /*system*/) {
   return std::nullopt;
@@ -70,7 +70,7 @@ std::optional<std::string> listed_text(const Scenario& scenario,
   return out;
 }
 
-/// An interval for some of the states, or a shape.
+/// Intervals for some of the states, or a shape.
 MappingValue obstacle_value() {
   MappingValue value{
       {{.name = "STATE", .family = NameFamily::kStates, .values = {IntervalValue{}}, .words = ""}}};

@@ -1,5 +1,5 @@
-// The keys of controllers that are no part of the program. Under another kind they are read and
-// have no effect, so that a scenario with a controller of its own can be driven by another, too.
+// The keys of controllers outside the program. Under another kind they are read but have no effect,
+// so that the same scenario can also be driven by another controller.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -25,23 +25,22 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostWords = 1000;  // of a command
-// s; as that of a period's deadline.
+// s; as for the deadline of a period.
 constexpr NumberRange kStartRange{.least = 0.0, .most = 1e6, .above_least = true};
 
 bool is_of_kind(const Scenario& scenario, const char* kind) {
   return scenario.controller.kind == kind;
 }
 
-/// `path` without "." and "..", relative ones beginning at `folder` or, if that is empty, at the
-/// working folder.
+/// `path` without "." and "..", relative to `folder` or, if that is empty, to the working folder.
 fs::path absolute_path(const fs::path& folder, const std::string& path) {
   std::error_code error;
   fs::path normal = (fs::current_path(error) / folder / path).lexically_normal();
   return normal.has_filename() ? normal : normal.parent_path();
 }
 
-/// Where `words`, the value of `key`, have their files: in the scenario's folder; or, where none of
-/// them is there and they were given on the command line, in the working folder.
+/// The base folder of the files in `words`, the value of `key`: the scenario's folder, or the
+/// working folder where `words` came from the command line and none of them is in the scenario's.
 fs::path folder_of(const ScenarioReading& reading, const Section& section, const std::string& key,
                    const std::vector<std::string>& words) {
   fs::path folder = reading.lookup.folder;
@@ -54,7 +53,7 @@ fs::path folder_of(const ScenarioReading& reading, const Section& section, const
 
 bool is_program(const fs::path& path) { return is_file(path) && ::access(path.c_str(), X_OK) == 0; }
 
-/// Whether `word` names a program, as execvp finds it from `folder`.
+/// Whether `word` names a program as execvp would find it from `folder`.
 bool finds_program(const std::string& word, const fs::path& folder) {
   if (word.find('/') != std::string::npos) return is_program(folder / word);
   const char* const path = std::getenv("PATH");

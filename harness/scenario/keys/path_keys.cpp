@@ -1,4 +1,4 @@
-// The keys of a target that is a path: in the scenario itself or in a file of its own.
+// The keys of a target that is a path: in the scenario itself or in a separate file.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -31,8 +31,8 @@ constexpr NumberRange kPathSpeeds{.least = 0.0, .most = 1000.0, .above_least = t
 
 bool has_path(const Scenario& scenario) { return scenario.target.has_path(); }
 
-/// Keeps the rows that were read, less a last point that is the first once more, and makes of them
-/// what is to be followed, and the road.
+/// Stores the rows that were read, without a last point that repeats the first, and derives the
+/// course and the road from them.
 void take_rows(ScenarioReading& reading, Section& section, PathRows read, const RowNote& note) {
   Scenario& scenario = reading.scenario;
   TargetPath& path = scenario.target.path;
@@ -46,7 +46,7 @@ void take_rows(ScenarioReading& reading, Section& section, PathRows read, const 
   if (path.laps != 1 && !path.closed) {
     section.note(kLapsKey, "1, as the path does not come back to where it begins");
   }
-  // What is wrong elsewhere may be what the rest would be made from.
+  // The course and the road may depend on values with problems elsewhere.
   if (!reading.problems.empty()) return;
   const models::SystemDescription& system = reading.system();
   const Eigen::VectorXd& mean = scenario.initial_state.mean;
@@ -110,7 +110,7 @@ void read_path(ScenarioReading& reading, Section& section, const KeyDescription&
   }
 }
 
-/// `path` reads it.
+/// Does nothing: `path` reads this key.
 void read_with_path(ScenarioReading& /*reading*/, Section& section, const KeyDescription& about) {
   (void)section.tree(about.name);
 }
@@ -144,7 +144,7 @@ void read_acceleration(ScenarioReading& reading, Section& section, const KeyDesc
   limits.across = (*given)[1];
 }
 
-/// What does not go with a path, which is in use.
+/// Notes settings that are incompatible with a path, if there is one.
 void check_path(const ScenarioReading& reading, Section& section) {
   const Scenario& scenario = reading.scenario;
   if (!has_path(scenario)) return;

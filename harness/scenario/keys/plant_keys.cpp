@@ -1,4 +1,4 @@
-// The keys of the plant that stands for the system.
+// The keys of the plant.
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kShortestSimulatorStep = 1e-6;  // s
 
-// The vehicle that drives, or is drawn for, a system unless the scenario names another. One that
-// has no place in the plane cannot be drawn without its own simulation.
+// The default vehicle of a system, which drives or is drawn. A vehicle without a position in the
+// plane cannot be drawn without its own simulation.
 std::string default_mjcf(const models::SystemDescription& system, const std::string& kind) {
   return kind != "mujoco" && system.position_x < 0 ? "" : default_vehicle(system.name);
 }
@@ -163,7 +163,7 @@ ScenarioKey model_error_key() {
         if (!scenario.model_error) return std::nullopt;
         std::string text =
             "\n" + model_error_text({*scenario.model_error, scenario.error_origin}, "  ");
-        text.pop_back();  // the end of its last line
+        text.pop_back();  // the final line feed
         return text;
       },
       .after = ReadAfter::kSystem,

@@ -1,4 +1,4 @@
-// The keys of a controller's prediction: its points, and what takes them on.
+// The keys of a controller's prediction: its numbers of points and its propagator.
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ constexpr WholeValue kPointsRange{1, 100'000};
 constexpr const char* kAutoWord = "auto";
 constexpr double kAutoTolerance = 1e-3;
 
-/// Its default stands in every resolved scenario, where it need have no effect.
+/// The default is always allowed, since every resolved scenario contains it.
 void check_propagator(const ScenarioReading& reading, Section& section) {
   const Scenario::Controller& controller = reading.scenario.controller;
   const std::string fallback = Scenario::Controller{}.propagator;

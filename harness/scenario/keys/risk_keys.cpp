@@ -1,4 +1,4 @@
-// The limits of the risk.
+// The keys of the risk limits.
 #include <cmath>
 
 #include "controller/planning/planner_settings.hpp"

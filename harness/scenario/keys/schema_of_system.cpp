@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kAnyPeriod = 0.1;  // s; names do not depend on it
+constexpr double kAnyPeriod = 0.1;  // s; the names do not depend on it
 
 struct SystemNames {
   const models::SystemEntry& system;
@@ -65,7 +65,7 @@ const std::vector<SystemNames>& names_of_systems() {
 Json part_of_mapping(const std::vector<KeyDescription>& keys, const SystemNames& names);
 Json part_of_key(const KeyDescription& key, const SystemNames& names);
 
-/// What the system adds to the schema of a value; empty where it does not matter.
+/// The constraints that the system adds to the schema of a value; empty without any.
 struct SystemPart {
   const SystemNames& names;
 
@@ -76,7 +76,7 @@ struct SystemPart {
   }
   Json operator()(const VectorValue& vector) const { return of_size(vector.size); }
   Json operator()(const MatrixValue& matrix) const {
-    // The only row may be written as a list of its numbers.
+    // A single row may be written as a list of its numbers.
     const bool is_row = matrix.rows != matrix.cols && names.inputs.size() == 1;
     Json part = is_row ? Json::object() : of_size(matrix.rows);
     part["items"] = of_size(matrix.cols);
@@ -109,7 +109,7 @@ Json part_of_key(const KeyDescription& key, const SystemNames& names) {
   return part;
 }
 
-/// What editors show of a constant.
+/// What editors show for a constant.
 Json parameter_part(const models::SystemEntry& entry, const std::string& name) {
   const double value = entry.defaults.at(name);
   return {{"description", fmt::format("constant of the system {} [{}]; default: {}", entry.name,
@@ -142,14 +142,14 @@ Json part_of_mapping(const std::vector<KeyDescription>& keys, const SystemNames&
   put_parts(part, known, has_family, keys, names);
   if (!has_family) return part;
   if (known.empty()) {
-    part["maxProperties"] = 0;  // e.g. the constants of a system that has none
+    part["maxProperties"] = 0;  // e.g. the constants of a system without constants
   } else {
     part["propertyNames"] = {{"enum", known}};
   }
   return part;
 }
 
-/// A model of the user's own.
+/// A user-defined model.
 Json is_own() { return {{"anyOf", {{{"required", {"library"}}}, {{"required", {"equations"}}}}}}; }
 
 Json is_system(const std::string& name) {
@@ -160,7 +160,7 @@ Json is_system(const std::string& name) {
 
 Json of_model(Json part) { return {{"properties", {{"model", std::move(part)}}}}; }
 
-/// A model has the keys of one's own or a name that is known.
+/// A model either has the keys of a user-defined one, or a known name.
 Json condition_of_own(const std::vector<KeyDescription>& keys) {
   std::vector<std::string> own;
   for (const KeyDescription& key : keys) {

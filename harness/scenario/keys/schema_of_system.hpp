@@ -10,11 +10,11 @@
 
 namespace qsmpc::harness {
 
-/// The names that `family` has in any system, each once.
+/// The names of `family` over all systems, without duplicates.
 [[nodiscard]] std::vector<std::string> names_of_family(NameFamily family);
 
-/// For each system a condition: if `model.system` is it, then names and sizes in `keys` are its
-/// own. The last condition tells systems of the user's own from those.
+/// One condition per system: if `model.system` names it, then the names and sizes in `keys` must be
+/// those of the system. The last condition distinguishes user-defined systems from these.
 [[nodiscard]] nlohmann::ordered_json conditions_of_systems(const std::vector<KeyDescription>& keys);
 
 }  // namespace qsmpc::harness

@@ -25,7 +25,7 @@ bool is_in(const Eigen::VectorXd& values, const NumberRange& range) {
   return (values.array() >= range.least).all() && (values.array() <= range.most).all();
 }
 
-/// Two numbers that must be there.
+/// A required pair of numbers.
 Eigen::Vector2d read_pair(Section& section, const std::string& key, const NumberRange& range,
                           const char* expected) {
   section.require(key, expected);
@@ -74,7 +74,7 @@ PlanarShape read_half_plane(Section& half_plane) {
   return shape;
 }
 
-/// Of the key, whose value is a list of corners rather than a mapping.
+/// Reads from the obstacle itself, since the value is a list of corners rather than a mapping.
 std::optional<PlanarShape> read_polygon(Section& obstacle, const std::string& key) {
   const std::size_t count = obstacle.list_size(key);
   const std::string expected =
@@ -119,7 +119,7 @@ KeyDescription shape_key(const char* name, const char* words, std::vector<KeyDes
   return {.name = name, .values = {MappingValue{std::move(keys)}}, .words = words};
 }
 
-/// Whether a state called as a shape is what is meant: [lower, upper].
+/// Whether the key means a state with the name of a shape: its value is [lower, upper].
 bool is_interval(const YamlNode& value) {
   return value.kind == YamlNode::Kind::kList &&
          std::ranges::all_of(

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kPoint = "point";
 constexpr const char* kFromMjcf = "from_mjcf";
-constexpr std::size_t kMostFootprintDiscs = 100;  // every particle is held against each of them
+constexpr std::size_t kMostFootprintDiscs = 100;  // every particle is tested against each of them
 constexpr NumberRange kDiscRadius{.least = 0.0, .most = 1e6, .above_least = true};
 constexpr const char* kNoPosition = "point, as the system has no position in the plane";
 
@@ -20,8 +20,8 @@ bool has_position(const models::SystemDescription& system) {
   return system.position_x >= 0 && system.position_y >= 0;
 }
 
-/// Whether the vehicle's file decides unless the scenario says otherwise. Programs write the
-/// footprint out: a recorded scenario without one is from before there were any.
+/// Whether the footprint comes from the vehicle's file unless stated otherwise. Programs always
+/// write the footprint: a recorded scenario without one predates footprints.
 bool is_from_mjcf_by_default(const ScenarioReading& reading) {
   return !reading.lookup.is_recorded && !reading.scenario.plant.mjcf.empty() &&
          has_position(reading.system());
@@ -30,7 +30,7 @@ bool is_from_mjcf_by_default(const ScenarioReading& reading) {
 void read_from_mjcf(ScenarioReading& reading, Section& section, const std::string& key) {
   const Scenario::Plant& plant = reading.scenario.plant;
   if (!has_position(reading.system())) return section.note(key, kNoPosition);
-  if (!reading.problems.empty()) return;  // which may be about the file or what it is to say
+  if (!reading.problems.empty()) return;  // they may concern the file or its mapping
   if (plant.mjcf.empty()) return section.note(key, "point or discs, as there is no plant.mjcf");
   try {
     reading.scenario.safe_set.body.discs = vehicle_footprint(
@@ -57,7 +57,7 @@ void read_discs(ScenarioReading& reading, Section& section, const KeyDescription
     if (offset) disc.offset = *offset;
     if (system.heading < 0 && !disc.offset.isZero(0.0)) {
       item.note("offset", "[0, 0], as the system has no heading");
-      disc.offset.setZero();  // for the checks that follow
+      disc.offset.setZero();  // so that the following checks can run
     }
     item.refuse_unread();
     reading.scenario.safe_set.body.discs.push_back(disc);

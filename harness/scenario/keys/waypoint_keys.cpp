@@ -22,8 +22,8 @@ constexpr std::size_t kMostWaypoints = 1000;
 
 bool has_waypoints(const Scenario& scenario) { return scenario.target.has_waypoints(); }
 
-/// What is wanted at each place of `rows`: the state that is written, or at a place alone its
-/// position, the heading of the way to it, and 0 of the others.
+/// The target state at each of `rows`: the state as written or, for a position alone, that
+/// position, the heading of the straight line to it, and 0 for the other states.
 Eigen::MatrixXd wanted_states(const std::vector<Eigen::VectorXd>& rows,
                               const models::SystemDescription& system,
                               const Eigen::VectorXd& start) {
@@ -51,7 +51,7 @@ Eigen::MatrixXd wanted_states(const std::vector<Eigen::VectorXd>& rows,
   return states;
 }
 
-/// Notes a waypoint that is where the one before is.
+/// Notes a waypoint that repeats the previous position.
 void check_places(const Eigen::MatrixXd& states, const models::SystemDescription& system,
                   Section& section) {
   for (Eigen::Index i = 1; i < states.cols(); ++i) {
@@ -98,7 +98,7 @@ void read_waypoints(ScenarioReading& reading, Section& section, const KeyDescrip
   target.state = target.route->states.rightCols<1>();
 }
 
-/// Notes waypoints that are not safe, and what does not drive to one after the other.
+/// Notes waypoints that are not safe, and settings that cannot drive to waypoints in turn.
 void check_waypoints(const ScenarioReading& reading, Section& section) {
   const Scenario& scenario = reading.scenario;
   if (!has_waypoints(scenario)) return;
@@ -142,7 +142,7 @@ std::vector<ScenarioKey> waypoint_keys() {
                           "passed, {range}",
                  .unit = "m",
                  .fallback_words = "`target.radius`"},
-       // `waypoints` reads it.
+       // Does nothing: `waypoints` reads this key.
        .read = [](ScenarioReading& /*reading*/, Section& section,
                   const KeyDescription& about) { (void)section.tree(about.name); },
        .write = [](const Scenario& scenario,

@@ -1,4 +1,4 @@
-// A system that is given by formulas instead of code.
+// A system defined by formulas instead of code.
 //
 //   EquationSystem car{.states = {{"x", "m"}, {"heading", "rad", true}},
 //                      .inputs = {{"yaw_rate", "rad/s"}},
@@ -8,7 +8,7 @@
 //                                    {"heading", "heading + time_step * yaw_rate"}}};
 //   const auto dynamics = make_equation_dynamics(car, /*time_step=*/0.1);
 //
-// Its derivatives, their enclosures, and steps of whole batches are made from the formulas.
+// Its derivatives, their enclosures and steps of whole batches are derived from the formulas.
 #pragma once
 
 #include <cstddef>
@@ -23,10 +23,11 @@
 
 namespace qsmpc::models {
 
-/// What an equation is called in formulas besides states, inputs, parameters and definitions.
+/// The name of the control period in formulas, besides those of states, inputs, parameters and
+/// definitions.
 inline constexpr const char* kTimeStepName = "time_step";
 
-/// Steps of an integrator in a control period.
+/// The largest number of integrator steps in a control period.
 inline constexpr int kMostSubsteps = 100;
 
 struct EquationSystem {
@@ -36,12 +37,12 @@ struct EquationSystem {
     std::string unit{};
   };
   struct Formula {
-    std::string name;  ///< of the state that it is of, or what it defines
+    std::string name;  ///< of its state, or of what it defines
     std::string text;
   };
   enum class Time {
-    kDiscrete,  ///< formulas are of the states after a control period
-    kEuler,     ///< of their derivatives, integrated by Euler's method
+    kDiscrete,  ///< formulas give the states after a control period
+    kEuler,     ///< formulas give their derivatives, integrated by Euler's method
     kRungeKutta,
   };
 
@@ -52,28 +53,28 @@ struct EquationSystem {
   Eigen::VectorXd input_lower;  ///< input_dim
   Eigen::VectorXd input_upper;
   std::vector<Parameter> parameters{};
-  std::vector<Formula> definitions{};  ///< auxiliary ones, which may use each other
+  std::vector<Formula> definitions{};  ///< auxiliary formulas, which may use each other
   std::vector<Formula> equations{};    ///< one for each state, in any order
   Time time = Time::kDiscrete;
   int substeps = 1;     ///< of the integrator, 1 to kMostSubsteps
-  int position_x = -1;  ///< states, as in SystemDescription
+  int position_x = -1;  ///< indices of states, as in SystemDescription
   int position_y = -1;
   int heading = -1;
-  /// Whether derivatives are known, without which no certificate is given.
+  /// Whether derivatives are known; without them no certificate is given.
   bool differentiable = true;
 };
 
 [[nodiscard]] SystemDescription description_of(const EquationSystem& system);
 
-/// What is wrong with a system of equations.
+/// An error in a system of equations.
 class EquationError : public std::invalid_argument {
  public:
   struct Where {
     std::string section;  ///< "states", "inputs", "parameters", "define" or "equations"
-    std::string name{};   ///< what in it
+    std::string name{};   ///< the entry in the section
     std::string found{};
     std::string expected{};
-    /// The name that is none of `known`, where it is that.
+    /// The name that is not among `known`, if that is the error.
     std::string unknown{};
     std::vector<std::string> known{};
   };
@@ -84,13 +85,13 @@ class EquationError : public std::invalid_argument {
   Where where_;
 };
 
-/// Throws EquationError unless there are states and inputs, and not too many of them.
+/// Throws EquationError if there are no states, no inputs, or too many of them.
 void check_sizes(const EquationSystem& system);
 
-/// Throws EquationError where names collide, a state has no equation or an equation no state, a
-/// formula is none, it uses what is not there, or definitions need each other in a circle; and
+/// Throws EquationError if names collide, a state has no equation or an equation no state, a
+/// formula is invalid or uses an unknown name, or definitions are circular; and
 /// std::invalid_argument unless time_step (s) is finite and above 0. No global Lipschitz constant
-/// is known where a derivative is not bounded everywhere.
+/// is known if a derivative is not bounded everywhere.
 [[nodiscard]] std::unique_ptr<const Dynamics> make_equation_dynamics(const EquationSystem& system,
                                                                      double time_step);
 

@@ -137,7 +137,7 @@ class TapeMaker {
     for (const EquationSystem::Formula& definition : system_.definitions) {
       definitions_.emplace(definition.name, parsed(kDefine, definition));
     }
-    // Those that no equation uses are checked, too.
+    // Definitions that no equation uses are checked as well.
     (void)formulas_at(arguments_from(0, system_.states.size()));
     for (const auto& [name, definition] : definitions_) (void)defined(definition);
   }
@@ -150,7 +150,7 @@ class TapeMaker {
     return ids;
   }
 
-  /// The equations where the states are `state`.
+  /// The equations evaluated at the states `state`.
   std::vector<Id> formulas_at(const std::vector<Id>& state) {
     values_ = {{kPiName, tape_.constant(std::numbers::pi)},
                {kTimeStepName, tape_.constant(time_step_)}};
@@ -269,7 +269,7 @@ class TapeMaker {
   std::vector<std::string> names_;  // that formulas may use
   std::vector<ParsedFormula> equations_;
   std::map<std::string, ParsedFormula> definitions_;
-  std::map<std::string, Id> values_;  // at the states of the moment
+  std::map<std::string, Id> values_;  // at the current states
   std::vector<std::string> open_;     // definitions that are being evaluated
 };
 

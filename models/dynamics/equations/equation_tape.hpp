@@ -1,4 +1,4 @@
-// From a system of equations to the tape of its step.
+// Turns a system of equations into the tape of its step.
 #pragma once
 
 #include "models/dynamics/equations/equation_system.hpp"
@@ -6,7 +6,8 @@
 
 namespace qsmpc::models {
 
-/// The step of `system`: of the states, then the inputs. Throws as make_equation_dynamics.
+/// The step of `system`, as a function of the states, then the inputs. Throws as
+/// make_equation_dynamics does.
 [[nodiscard]] Tape step_tape(const EquationSystem& system, double time_step);
 
 }  // namespace qsmpc::models

@@ -8,7 +8,7 @@
 namespace qsmpc::models {
 namespace {
 
-// Far more than anybody writes, and little enough for the stack.
+// Far more than in any real formula, and safe for the stack.
 constexpr int kDeepest = 200;
 constexpr std::size_t kLongest = 10000;  // bytes
 
@@ -77,11 +77,11 @@ class Parser {
     while (at_ < text_.size() && is_space(text_[at_])) ++at_;
   }
 
-  /// Whether `symbol` comes next, which is then passed.
+  /// Whether `symbol` comes next; if so, skips it.
   bool take(std::string_view symbol) {
     skip_space();
     if (!text_.substr(at_).starts_with(symbol)) return false;
-    // A product is not the first half of a power.
+    // "*" must not match the first half of "**".
     if (symbol == "*" && text_.substr(at_).starts_with("**")) return false;
     at_ += symbol.size();
     return true;

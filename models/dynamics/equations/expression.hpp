@@ -1,4 +1,4 @@
-// Formulas as users write them, read into a list of steps: "x + time_step * v * cos(heading)".
+// Parses formulas as users write them into a list of steps: "x + time_step * v * cos(heading)".
 //
 //   const Expression formula = parse_expression("-x^2 + 3");
 //   // names: x; steps: x 2 power negate 3 add
@@ -14,19 +14,19 @@
 
 namespace qsmpc::models {
 
-/// What a formula does not say as it should.
+/// An error in a formula.
 class ExpressionError : public std::invalid_argument {
  public:
-  /// column: of the character in the formula, from 1; 0 where it is of the whole of it.
+  /// column: of the character in the formula, from 1; 0 if the error concerns the whole formula.
   ExpressionError(std::size_t column, const std::string& found, const std::string& expected);
-  /// Of a name (or "the function '…'") that is none of `known`.
+  /// For a name (or "the function '…'") that is not among `known`.
   ExpressionError(std::size_t column, const std::string& found, std::string unknown,
                   std::vector<std::string> known);
 
   [[nodiscard]] std::size_t column() const { return column_; }
   [[nodiscard]] const std::string& found() const { return found_; }
   [[nodiscard]] const std::string& expected() const { return expected_; }
-  /// The name that is not known, and those that are; empty where it is something else.
+  /// The unknown name and the known ones; empty for other errors.
   [[nodiscard]] const std::string& unknown() const { return unknown_; }
   [[nodiscard]] const std::vector<std::string>& known() const { return known_; }
 
@@ -38,17 +38,17 @@ class ExpressionError : public std::invalid_argument {
   std::vector<std::string> known_;
 };
 
-/// What a formula may call.
+/// A function that a formula may call.
 struct ExpressionFunction {
   const char* name;
   int arguments;
 };
 [[nodiscard]] const std::vector<ExpressionFunction>& expression_functions();
 
-/// The ratio of a circle's circumference to its diameter, in formulas.
+/// The name of π in formulas.
 inline constexpr const char* kPiName = "pi";
 
-/// A formula's steps in the order in which they are done, each on the results of those before it.
+/// A formula's steps in order of evaluation, each applied to the results of those before it.
 struct Expression {
   enum class Kind { kNumber, kName, kNegate, kAdd, kSubtract, kMultiply, kDivide, kPower, kCall };
   struct Step {
@@ -60,7 +60,7 @@ struct Expression {
   std::vector<Step> steps;
 };
 
-/// Throws ExpressionError on what is no formula, on an unknown function or on a wrong number of
+/// Throws ExpressionError on an invalid formula, an unknown function or a wrong number of
 /// arguments.
 [[nodiscard]] Expression parse_expression(std::string_view text);
 

@@ -12,7 +12,7 @@ using Id = Tape::Id;
 
 constexpr int kMostFactors = 64;
 constexpr Id kNone = -1;
-// Of the integrators' steps, above all.
+// Limits above all the steps of the integrators.
 constexpr std::size_t kMostNodes = 200000;
 
 bool is_commutative(Operation operation) {
@@ -172,7 +172,8 @@ Id Tape::power(Id a, Id b) {
 
 namespace {
 
-/// The sweep from the last operation of a tape to the first, as operations of another tape.
+/// The reverse sweep, from the last operation of a tape to the first, as operations of another
+/// tape.
 class ReverseSweep {
  public:
   explicit ReverseSweep(const Tape& forward)
@@ -237,7 +238,7 @@ class ReverseSweep {
   /// adjoint · by.
   void give(Id id, Id adjoint, Id by) { give(id, tape_.multiply(adjoint, by)); }
 
-  /// From the adjoint of `id` to those of its operands.
+  /// Propagates the adjoint of `id` to those of its operands.
   void pass_on(Id id) {
     const Tape::Node& node = forward_.node(id);
     const Id adjoint = adjoints_[static_cast<std::size_t>(id)];
@@ -285,7 +286,7 @@ class ReverseSweep {
       if (tape_.is_constant(b)) return;
       return give(node.b, adjoint, tape_.multiply(copy(id), tape_.unary(Operation::kLog, a)));
     }
-    // One of the two has it all.
+    // One of the two receives the whole adjoint.
     const Id first = tape_.multiply(adjoint, tape_.binary(Operation::kLessEqual, a, b));
     const Id second = tape_.subtract(adjoint, first);
     const bool is_min = node.operation == Operation::kMin;

@@ -1,5 +1,5 @@
 // A function of several numbers as a list of elementary operations, and its reverse derivative as
-// another such list. Equal operations are there once, and those on constants are done beforehand.
+// another such list. Equal operations are stored only once, and operations on constants are folded.
 //
 //   Tape tape(2);
 //   tape.outputs = {tape.multiply(tape.argument(0), tape.sine(tape.argument(1)))};
@@ -50,7 +50,7 @@ class Tape {
 
   struct Node {
     Operation operation;
-    Id a = 0;  ///< operands; of an argument its number
+    Id a = 0;  ///< operands; for an argument, its number
     Id b = 0;
     double constant = 0.0;
   };
@@ -71,9 +71,9 @@ class Tape {
   [[nodiscard]] Id subtract(Id a, Id b);
   [[nodiscard]] Id multiply(Id a, Id b);
   [[nodiscard]] Id divide(Id a, Id b);
-  /// Whole exponents up to 64 by products.
+  /// Integer exponents up to 64 become products.
   [[nodiscard]] Id power(Id a, Id b);
-  /// Any of the operations of one operand.
+  /// Any operation with one operand.
   [[nodiscard]] Id unary(Operation operation, Id a);
   /// kLessEqual, kMin, kMax or kAtan2.
   [[nodiscard]] Id binary(Operation operation, Id a, Id b);
@@ -90,7 +90,7 @@ class Tape {
   std::map<std::tuple<Operation, Id, Id, std::uint64_t>, Id> known_;
 };
 
-/// What an operation gives, by the standard library.
+/// The result of an operation, by the standard library.
 [[nodiscard]] double evaluate(Tape::Operation operation, double a, double b);
 
 /// The function (arguments, adjoints of the outputs) ↦ adjoints of the arguments.

@@ -11,7 +11,7 @@
 namespace qsmpc::models {
 namespace {
 
-// Rows of a batch that a program takes: states, inputs and adjoints.
+// Most rows of a batch that a program takes: states, inputs and adjoints.
 constexpr std::size_t kMostRows = 2 * static_cast<std::size_t>(kMostCoordinates);
 
 using Rows = std::array<const double*, kMostRows>;
@@ -45,7 +45,7 @@ class TapeDynamics final : public Dynamics {
     run(pullback_, from.data(), to.data(), static_cast<std::size_t>(states.cols()));
   }
 
-  /// A pullback of each of the new states alone.
+  /// One pullback for each of the new states.
   void jacobians(const Eigen::Ref<const Eigen::VectorXd>& state,
                  const Eigen::Ref<const Eigen::VectorXd>& input,
                  Eigen::Ref<Eigen::MatrixXd> state_jacobian,

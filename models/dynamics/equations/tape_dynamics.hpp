@@ -1,4 +1,4 @@
-// The system whose step a tape is.
+// A system whose step is given as a tape.
 #pragma once
 
 #include <memory>
@@ -8,11 +8,11 @@
 
 namespace qsmpc::models {
 
-/// States and inputs that a system of one's own may have in all.
+/// The largest number of states and inputs, in total, of a user-defined system.
 inline constexpr int kMostCoordinates = 32;
 
-/// tape: of the states, then the inputs, to the new states. Its batches go through vector loops;
-/// its Lipschitz constant is infinite where a derivative is not bounded everywhere.
+/// tape: from the states, then the inputs, to the new states. Batches run in vector loops; the
+/// Lipschitz constant is infinite if a derivative is not bounded everywhere.
 [[nodiscard]] std::unique_ptr<const Dynamics> make_tape_dynamics(SystemDescription description,
                                                                  Tape tape);
 

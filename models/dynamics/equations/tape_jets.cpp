@@ -100,7 +100,7 @@ class JetSweep {
     return tape_.is_constant(id) && std::isfinite(tape_.node(id).constant);
   }
 
-  /// Of a constant that is no number, such as that of 0/0, nothing is known.
+  /// Nothing is known about a NaN constant, such as 0/0.
   static Jet constant(double value) {
     if (std::isfinite(value)) return Jet(value);
     return inverse(Jet(0.0));

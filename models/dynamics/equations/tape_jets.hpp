@@ -8,8 +8,8 @@
 
 namespace qsmpc::models {
 
-/// Of the outputs of `tape`, which has at most kMostCoordinates arguments, for arguments from
-/// `lower` to `upper`.
+/// Enclosures for the outputs of `tape`, which has at most kMostCoordinates arguments, over
+/// arguments from `lower` to `upper`.
 [[nodiscard]] DerivativeBounds derivative_bounds_of(const Tape& tape,
                                                     const Eigen::Ref<const Eigen::VectorXd>& lower,
                                                     const Eigen::Ref<const Eigen::VectorXd>& upper);

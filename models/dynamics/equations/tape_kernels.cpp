@@ -1,4 +1,4 @@
-// Running a tape's program: a loop over vectors for each instruction.
+// Runs a tape's program, with a loop over vectors for each instruction.
 #include "models/dynamics/equations/tape_program.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -16,10 +16,10 @@
 
 namespace qsmpc::models {
 
-/// Particles that are worked on at a time: their registers stay in the nearest cache.
+/// Particles processed at a time, so that their registers stay in the nearest cache.
 inline constexpr std::size_t kBlock = 128;
-/// From one register to the next: not a multiple of the pages' size, at which processors take
-/// stores for those that a load waits for.
+/// From one register to the next: not a multiple of the page size, at which processors mistake
+/// unrelated stores for ones that a load depends on.
 inline constexpr std::size_t kRegisterStride = kBlock + 8;
 
 }  // namespace qsmpc::models
@@ -55,7 +55,7 @@ HWY_INLINE Vector sign_of(Vector a) {
   return hn::IfThenElse(hn::Gt(a, zeros()), constant(1.0), below);
 }
 
-/// What is not a number stays so.
+/// NaN stays NaN.
 HWY_INLINE Vector smaller(Vector a, Vector b) {
   const Mask takes_b = hn::Or(hn::Lt(b, a), hn::IsNaN(b));
   return hn::IfThenElse(takes_b, b, a);
@@ -73,7 +73,7 @@ HWY_INLINE void sines_and_cosines(std::size_t size, const double* a, double* sin
   }
 }
 
-/// Arithmetic alone.
+/// Arithmetic instructions only.
 HWY_INLINE bool arithmetic(const TapeProgram::Instruction& step, std::size_t size, const double* a,
                            const double* b, double* out) {
   using Opcode = TapeProgram::Opcode;
@@ -174,7 +174,7 @@ HWY_EXPORT(run_block);
 
 namespace {
 
-/// Registers of the calling thread, which grow to the most that a program has needed.
+/// Registers of the calling thread; they grow to the most that any program has needed.
 double* scratch(std::size_t registers) {
   thread_local std::vector<double> memory;
   const std::size_t size = registers * kRegisterStride;

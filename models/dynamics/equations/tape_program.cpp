@@ -68,7 +68,7 @@ Opcode opcode_of(Operation operation) {
   }
 }
 
-/// One instruction before registers are given: its operands are values of the tape.
+/// An instruction before register allocation: its operands are values of the tape.
 struct Planned {
   TapeProgram::Instruction instruction;
   Id result = kNowhere;
@@ -129,7 +129,7 @@ class Compiler {
     plan_.push_back(planned);
   }
 
-  /// Operands that are constants become part of the instruction, where there is one for it.
+  /// Makes constant operands part of the instruction if there is an opcode for it.
   void take_constant(const Tape::Node& node, Planned& planned) const {
     const bool first = tape_.is_constant(node.a);
     if (!first && !tape_.is_constant(node.b)) return;
@@ -157,7 +157,7 @@ class Compiler {
     planned.b = kNowhere;
   }
 
-  /// a + c b where nothing else needs c b, which the instruction before it may have computed.
+  /// Fuses a + c b into one instruction, without the one for c b, if nothing else uses c b.
   void take_multiple(Planned& planned) {
     if (planned.instruction.opcode != Opcode::kAdd || planned.a == planned.b) return;
     for (const bool swapped : {false, true}) {
@@ -223,7 +223,7 @@ class Compiler {
     TapeProgram::Instruction& instruction = planned.instruction;
     instruction.a = registers_[at(planned.a)];
     if (planned.b != kNowhere) instruction.b = registers_[at(planned.b)];
-    // Operands that nothing needs later leave their registers to the results.
+    // Operands without later uses free their registers for the results.
     leave_register(planned.a, now);
     if (planned.b != kNowhere && planned.b != planned.a) leave_register(planned.b, now);
     take_register(planned.result);
@@ -251,7 +251,7 @@ class Compiler {
   std::vector<std::pair<Id, Id>> sines_;    // operand, value
   std::vector<std::pair<Id, Id>> cosines_;  // operand, value
   std::vector<Planned> plan_;
-  std::vector<int> last_use_;  // by value: the number of an instruction
+  std::vector<int> last_use_;  // by value: index of an instruction
   std::vector<int> registers_;
   std::vector<int> free_;
   TapeProgram program_;

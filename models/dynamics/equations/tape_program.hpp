@@ -1,5 +1,5 @@
-// A tape as instructions for whole batches: registers hold a value of many particles each, and
-// every instruction goes through all of them.
+// A tape as instructions for whole batches: each register holds one value of many particles, and
+// every instruction processes all of them.
 #pragma once
 
 #include <cstddef>
@@ -33,11 +33,11 @@ struct TapeProgram {
     kLessEqual,
     kMin,
     kMax,
-    kLibrary,  ///< the standard library's, value by value
+    kLibrary,  ///< a standard library function, value by value
   };
   struct Instruction {
     Opcode opcode{};
-    Tape::Operation operation{};  ///< of the library's
+    Tape::Operation operation{};  ///< for kLibrary
     int target = 0;               ///< registers
     int second_target = 0;
     int a = 0;
@@ -50,7 +50,7 @@ struct TapeProgram {
   };
 
   std::vector<Constant> constants;
-  std::vector<int> arguments;  ///< the register of each; -1 where it is not needed
+  std::vector<int> arguments;  ///< the register of each; -1 if it is not needed
   std::vector<Instruction> instructions;
   std::vector<int> outputs;
   int registers = 0;
@@ -59,8 +59,9 @@ struct TapeProgram {
 /// The program that computes the outputs of `tape`.
 [[nodiscard]] TapeProgram compile(const Tape& tape);
 
-/// Runs `program` on `count` particles. arguments, outputs: a row of `count` values for each. An
-/// output may be the row of an argument. No result depends on the particles beside it.
+/// Runs `program` on `count` particles. arguments, outputs: one row of `count` values for each. An
+/// output may be the row of an argument. The result for a particle does not depend on its
+/// neighbours.
 void run(const TapeProgram& program, const double* const* arguments, double* const* outputs,
          std::size_t count);
 

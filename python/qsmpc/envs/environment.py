@@ -1,4 +1,4 @@
-"""One drive as an environment of Gymnasium."""
+"""One drive as a Gymnasium environment."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ class Environment(gymnasium.Env[Floats, Floats]):
     """A scenario's plant with its disturbances; the action is the input of a control period.
 
     The observation is what a controller sees of the state, n. An action is −1 … 1 for each input,
-    from its lower to its upper bound. The reward is minus the cost of the period, over that of the
-    start; an unsafe end costs as much as standing still there until the step limit. It terminates
-    with the outcomes ``reached``, ``collision``, ``left_bounds`` and ``fault``, and is truncated
-    at the step limit.
+    from its lower to its upper bound. The reward is minus the cost of the period, relative to that
+    of the start; an unsafe end costs as much as standing still there until the step limit. An
+    episode terminates with the outcomes ``reached``, ``collision``, ``left_bounds`` and ``fault``,
+    and is truncated at the step limit.
 
-    ``info`` has ``clearance`` (of the state at the end of the step, as the observation), ``unsafe``,
-    ``cost``, ``outcome`` (empty while it goes on), and ``certified``: an upper bound of the
-    probability that the step's end is unsafe, for the action that was taken, certified before the
-    step; not a number without ``certify``, after a reset, and where ``scenario.no_bound`` is no bound.
+    ``info`` has ``clearance`` (of the state at the end of the step, like the observation),
+    ``unsafe``, ``cost``, ``outcome`` (empty while the episode is running), and ``certified``: an
+    upper bound of the probability that the step's end is unsafe, for the action taken, certified
+    before the step. It is NaN without ``certify``, after a reset, and if ``scenario.no_bound`` says
+    that there is no bound.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}
@@ -44,8 +45,8 @@ class Environment(gymnasium.Env[Floats, Floats]):
         size: tuple[int, int] = (640, 360),
         camera: str = "chase",
     ) -> None:
-        """``settings``: of the scenario, as in `load`. ``certify``: whether steps are certified,
-        which takes most of their time. ``size`` and ``camera``: of rendered pictures."""
+        """``settings``: of the scenario, as in `load`. ``certify``: whether to certify steps, which
+        takes most of their time. ``size`` and ``camera``: of rendered pictures."""
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode {render_mode!r}, expected None or 'rgb_array'")
         base = as_scenario(scenario)
@@ -63,7 +64,7 @@ class Environment(gymnasium.Env[Floats, Floats]):
     def reset(
         self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[Floats, dict[str, Any]]:
-        """Begins a drive. A given ``seed`` is that of the drive, as in ``qsmpc run --seed``."""
+        """Begins a drive. If given, ``seed`` is that of the drive, as in ``qsmpc run --seed``."""
         super().reset(seed=seed)
         drawn = int(self.np_random.integers(SEEDS)) if seed is None else int(seed)
         self._drive.begin(drawn, None, self._certify)
@@ -72,7 +73,7 @@ class Environment(gymnasium.Env[Floats, Floats]):
         )
 
     def step(self, action: ArrayLike) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
-        if self._drive.outcome is not None:  # it began where it ends, which is rare
+        if self._drive.outcome is not None:  # rare: the drive began at its end
             over = information(0.0, math.nan, self._drive.clearance, self._drive.outcome)
             return self._drive.observation, 0.0, True, False, over
         cost, certified, clearance = self._drive.advance(self._task.inputs(action))
@@ -88,7 +89,7 @@ class Environment(gymnasium.Env[Floats, Floats]):
         )
 
     def render(self) -> Optional[NDArray[np.uint8]]:
-        """The picture now, height × width × 3; nothing without a render mode."""
+        """The current picture, height × width × 3; None without a render mode."""
         if self.render_mode is None:
             return None
         if self._picture is None:

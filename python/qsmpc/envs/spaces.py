@@ -1,4 +1,4 @@
-"""What the environments have in common: spaces, rewards, and what is told beside them."""
+"""The common parts of the environments: spaces, rewards and ``info``."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from qsmpc.scenarios import Scenario
 
 Floats = NDArray[np.float64]
 
-# Beyond any state of the shipped systems; spaces without bounds are warned of.
+# Beyond any state of the shipped systems; Gymnasium warns about unbounded spaces.
 MOST = 1e9
 SEEDS = 2**31 - 1
 UNSAFE = ("collision", "left_bounds")
 
 
 def observation_space(scenario: Scenario) -> spaces.Box:
-    """What may be seen of the state. It is wider than the safe set, which is left at the end."""
+    """The space of observations: wider than the safe set, which a drive may leave at its end."""
     return spaces.Box(-MOST, MOST, scenario.initial_mean.shape, np.float64)
 
 
@@ -29,7 +29,7 @@ def action_space(scenario: Scenario) -> spaces.Box:
 
 
 class Task:
-    """How a scenario's drives are rewarded, and what actions stand for."""
+    """The rewards of a scenario's drives, and the meaning of actions."""
 
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
@@ -38,9 +38,9 @@ class Task:
         self.scale = start if start > 0.0 else 1.0
 
     def inputs(self, actions: ArrayLike) -> Floats:
-        """Inputs, for actions within −1 … 1 (beyond them, the nearest)."""
+        """Inputs for actions within −1 … 1 (clipped to this range)."""
         share = 0.5 * (np.clip(np.asarray(actions, float), -1.0, 1.0) + 1.0)
-        # At the ends, rounding must not lead beyond the bounds.
+        # Rounding at the ends must not exceed the bounds.
         return np.clip(self.lower + share * (self.upper - self.lower), self.lower, self.upper)
 
     def reward(self, cost: float, outcome: Optional[str], periods_left: int) -> float:
@@ -50,7 +50,7 @@ class Task:
 
 
 def information(cost: float, certified: float, clearance: float, outcome: Optional[str]) -> dict[str, Any]:
-    """What a step tells beside its observation and reward."""
+    """What a step returns beside its observation and reward."""
     return {
         "clearance": clearance,
         "certified": certified,

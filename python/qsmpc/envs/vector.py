@@ -1,4 +1,4 @@
-"""Many drives side by side, on threads, as a vector environment of Gymnasium."""
+"""Many drives in parallel, on threads, as a Gymnasium vector environment."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Flags = NDArray[np.bool_]
 
 
 class VectorEnvironment(VectorEnv[Floats, Floats, Floats]):
-    """``num_envs`` environments of one scenario. The step after the end of a drive resets it, without
-    regard to its action, as ``AutoresetMode.NEXT_STEP`` asks."""
+    """``num_envs`` environments of one scenario. The step after the end of a drive resets it and
+    ignores its action, as ``AutoresetMode.NEXT_STEP`` requires."""
 
     metadata = {
         "render_modes": ["rgb_array"],
@@ -39,7 +39,7 @@ class VectorEnvironment(VectorEnv[Floats, Floats, Floats]):
         size: tuple[int, int] = (640, 360),
         camera: str = "chase",
     ) -> None:
-        """As `Environment`. ``threads``: that step; no result depends on it."""
+        """As `Environment`. ``threads``: the number used for steps; results do not depend on it."""
         if num_envs < 1 or threads < 1:
             raise ValueError("num_envs and threads are at least 1")
         base = as_scenario(scenario)
@@ -74,7 +74,7 @@ class VectorEnvironment(VectorEnv[Floats, Floats, Floats]):
         seed: int | list[int | None] | None = None,
         options: Optional[dict[str, Any]] = None,
     ) -> tuple[Floats, dict[str, Any]]:
-        """Begins all drives, with the seeds ``seed``, ``seed`` + 1, … or those listed."""
+        """Begins all drives with the seeds ``seed``, ``seed`` + 1, …, or with the listed ones."""
         super().reset(seed=seed if isinstance(seed, int) else None)
         if seed is None:
             seeds = self.np_random.integers(SEEDS, size=self.num_envs).tolist()
@@ -102,7 +102,7 @@ class VectorEnvironment(VectorEnv[Floats, Floats, Floats]):
         return observations, rewards, terminations, truncations, info
 
     def render(self) -> Optional[tuple[NDArray[np.uint8], ...]]:
-        """A picture of each drive; nothing without a render mode."""
+        """A picture of each drive; None without a render mode."""
         if self.render_mode is None:
             return None
         while len(self._pictures) < self.num_envs:

@@ -1,4 +1,4 @@
-"""Episodes as files of other viewers, on one timeline: simulated time from the drive's start."""
+"""Episodes as files for third-party viewers, on one timeline: time since the drive's start."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def _module(name: str, package: str, extra: str) -> ModuleType:
-    """A module of this package. Raises `ModuleNotFoundError` where its ``package`` is not there."""
+    """A module of this package. Raises `ModuleNotFoundError` if its ``package`` is missing."""
     try:
         return importlib.import_module(f"qsmpc.exports.{name}")
     except ModuleNotFoundError as error:
@@ -28,7 +28,7 @@ def _module(name: str, package: str, extra: str) -> ModuleType:
 
 
 def _checked(path: Path, ending: str) -> str:
-    """Viewers tell formats by the ending."""
+    """Checks the extension, by which viewers recognise formats."""
     text = os.fspath(path)
     if not text.endswith(ending):
         raise ValueError(f"{text}: expected a path that ends in {ending}")

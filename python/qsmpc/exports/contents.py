@@ -1,4 +1,4 @@
-"""What the files for other viewers show of an episode, as plain arrays, whatever their format."""
+"""The content of the files for third-party viewers as plain arrays, independent of the format."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ Colour = tuple[float, float, float, float]
 
 INFO, WARNING, ERROR = "info", "warning", "error"
 
-#: The part of a Gaussian's probability that the ellipses of beliefs hold.
+#: The probability that the ellipses of beliefs contain.
 ELLIPSE_PROBABILITY = 0.95
 _ELLIPSE_POINTS = 48
 _ARC_POINTS = 24
 _CIRCLE_POINTS = 48
-_MARGIN = 1.0  # about the drive, where the safe set has no bound
+_MARGIN = 1.0  # around the drive, where the safe set has no bound
 
-# sRGB and opacity: of Okabe and Ito's palette, to be seen on light ground and on dark.
+# sRGB and opacity, from Okabe and Ito's palette; visible on light and on dark backgrounds.
 SKY: Colour = (0.34, 0.71, 0.91, 1.0)
 BLUE: Colour = (0.00, 0.45, 0.70, 1.0)
 GREEN: Colour = (0.00, 0.62, 0.45, 1.0)
@@ -38,9 +38,9 @@ PARTIAL: Colour = (0.50, 0.50, 0.50, 0.3)
 
 @dataclass(frozen=True)
 class Series:
-    """A number over time. Values that are not finite are left out."""
+    """A number over time. Non-finite values are left out."""
 
-    group: str  #: what is plotted together, e.g. ``state``
+    group: str  #: series of one group are plotted together, e.g. ``state``
     name: str
     unit: str
     nanoseconds: NDArray[np.int64]
@@ -49,7 +49,7 @@ class Series:
 
 @dataclass(frozen=True)
 class Event:
-    """Something that is said at a time."""
+    """A message at a time."""
 
     nanoseconds: int
     level: str
@@ -66,7 +66,7 @@ class Box:
 
 
 def _nanoseconds(seconds: Floats) -> NDArray[np.int64]:
-    """Rounded: 0.7 s is not to become 699 999 999 ns."""
+    """Rounded, so that 0.7 s does not become 699 999 999 ns."""
     return np.rint(np.asarray(seconds, float) * 1e9).astype(np.int64)
 
 
@@ -93,7 +93,7 @@ def _within(corners: Floats, lower: Floats, upper: Floats) -> Floats:
 
 
 class DriveMap:
-    """An episode on the map of two of its states; where there is one, the plane of its position."""
+    """An episode on a map of two of its states: the plane of its position, if it has one."""
 
     def __init__(self, episode: Episode, axes: tuple[int, int, bool]) -> None:
         self.episode = episode
@@ -105,24 +105,24 @@ class DriveMap:
         path = np.vstack([path[np.isfinite(path).all(axis=1)], self.points(scenario.target)])
         lower, upper = (self.points(bound) for bound in scenario.bounds)
         self._bounds = lower, upper
-        #: Corners of what is shown: the bounds, or about the drive where there are none.
+        #: Corners of the shown area: the bounds, or around the drive where there are none.
         self.lower = np.where(np.isfinite(lower), lower, path.min(axis=0) - _MARGIN)
         self.upper = np.where(np.isfinite(upper), upper, path.max(axis=0) + _MARGIN)
-        #: A length by which lines and marks are scaled.
+        #: A length that scales lines and marks.
         self.size = float((self.upper - self.lower).max())
 
     def points(self, states: Floats) -> Floats:
-        """The places of states (… × n) on the map, … × 2."""
+        """The positions of states (… × n) on the map, … × 2."""
         return np.asarray(states)[..., self.axes]
 
     def headings(self, states: Floats) -> Floats:
-        """rad, of states (… × n); 0 of a system without heading."""
+        """Headings of states (… × n), rad; 0 for a system without heading."""
         if self.heading < 0:
             return np.zeros(np.shape(states)[:-1])
         return np.asarray(states)[..., self.heading]
 
     def obstacles(self) -> list[Box]:
-        """Boxes of the unsafe set that restrict the states of the map, within what is shown."""
+        """Boxes of the unsafe set that restrict the states of the map, within the shown area."""
         boxes = []
         for lower, upper in self.episode.scenario.obstacles:
             restricted = np.isfinite(lower) | np.isfinite(upper)
@@ -136,8 +136,8 @@ class DriveMap:
         return boxes
 
     def shapes(self) -> list[Floats]:
-        """Closed lines (points × 2) about the obstacles that are shapes of the plane, within what
-        is shown."""
+        """Closed lines (points × 2) around the obstacles that are shapes in the plane, within the
+        shown area."""
         if not self.is_plane:
             return []
         outlines = [
@@ -158,12 +158,12 @@ class DriveMap:
         return lines
 
     def target(self) -> Floats:
-        """The circle about the target within which a drive arrives, points × 2."""
+        """The circle around the target within which a drive has arrived, points × 2."""
         scenario = self.episode.scenario
         return self.points(scenario.target) + _circle(scenario.target_radius, _CIRCLE_POINTS)
 
     def body(self) -> list[Floats]:
-        """Lines (points × 2) about the vehicle in its own frame; none of a point."""
+        """Outlines (points × 2) of the vehicle in its own frame; none for a point."""
         lines = []
         for x, y, radius, start, end in core.body_outline(self.episode.scenario.core):
             angles = np.linspace(start, end, _ARC_POINTS)
@@ -171,7 +171,7 @@ class DriveMap:
         return lines
 
     def belief_ellipses(self) -> Floats:
-        """About the belief of each period, steps × points × 2."""
+        """Ellipses of the belief of each period, steps × points × 2."""
         means = self.points(self.episode.belief_means)
         covariances = self.episode.belief_covariances[:, self.axes][:, :, self.axes]
         radius = math.sqrt(-2.0 * math.log(1.0 - ELLIPSE_PROBABILITY))
@@ -185,26 +185,26 @@ class DriveMap:
         return ellipses
 
     def plans(self) -> Floats:
-        """Nominal paths, steps × (stages + 1) × 2; not a number without a plan."""
+        """Nominal paths, steps × (stages + 1) × 2; NaN without a plan."""
         return self.points(self.episode.plan_states)
 
     def particles(self, step: int, stage: int) -> tuple[Floats, Floats]:
-        """Places (points × 2) and weights of a stage's particles; none where there are none."""
+        """Positions (points × 2) and weights of a stage's particles; empty if there are none."""
         try:
             locations, weights = self.episode.particles(step, stage)
-        except IndexError:  # the plan of this step is without
+        except IndexError:  # the plan of this step has no particles
             return np.empty((0, 2)), np.empty(0)
         return self.points(locations), weights
 
 
 class Contents:
-    """What is shown of an episode, or of the one that a path leads to."""
+    """The content shown for an episode, or for the one at a path."""
 
     def __init__(self, trace: Union[Episode, Path]) -> None:
         self.episode = trace if isinstance(trace, Episode) else read(trace)
         self.scenario = self.episode.scenario
         axes = core.map_axes(self.episode.core)
-        #: None of a system none of whose states is a position.
+        #: None for a system without any position state.
         self.map: Optional[DriveMap] = None if axes is None else DriveMap(self.episode, axes)
         self.state_nanoseconds = _nanoseconds(self.episode.times)
         self.step_nanoseconds = self.state_nanoseconds[: self.episode.steps]
@@ -214,7 +214,7 @@ class Contents:
         return f"{self.scenario.name}, seed {self.episode.seed}"
 
     def about(self) -> dict[str, str]:
-        """What the whole episode is, as words."""
+        """A description of the episode in words."""
         episode = self.episode
         words = {
             "scenario": self.scenario.name,
@@ -247,7 +247,7 @@ class Contents:
         certified = episode.certificates["value"]
         yield self._series("certificate", "next_step", "", certified[:, 0])
         if episode.stages > 0:
-            # By the union bound, as the program's own `horizon`.
+            # By the union bound, like the program's own `horizon`.
             horizon = np.minimum(certified.sum(axis=1), 1.0)
             yield self._series("certificate", "horizon", "", horizon)
         limit = episode.summary["mission"]["limit"]
@@ -256,7 +256,7 @@ class Contents:
             yield self._series("risk", "limit", "", np.full(episode.steps, float(limit)))
 
     def events(self) -> list[Event]:
-        """How the solver ended, where that changes, and how the drive did."""
+        """Changes of the solver's status, and the outcome of the drive."""
         events = []
         before = None
         for nanoseconds, status in zip(self.step_nanoseconds, self.episode.statuses):

@@ -1,4 +1,4 @@
-"""Messages in Foxglove's schemas, as JSON, and the schemas of those that are used here."""
+"""Messages in Foxglove's schemas as JSON, and the schemas used here."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _INTEGER: Schema = {"type": "integer", "minimum": 0}
 _STRING: Schema = {"type": "string"}
 _BOOLEAN: Schema = {"type": "boolean"}
 
-# Of foxglove.NumericType.
+# Values of foxglove.NumericType.
 _NUMERIC_TYPES = {"<u2": 3, "<f4": 7, "<f8": 8}
 _LEVELS = {INFO: 2, WARNING: 3, ERROR: 4}
 _LINE_STRIP = 0
 
 
 def object_schema(properties: dict[str, Schema], title: str = "", **more: Any) -> Schema:
-    """An object with these properties, all of which must be there unless ``required`` is given."""
+    """An object with these properties, all of them required unless ``required`` is given."""
     schema: Schema = {"title": title} if title else {}
     return {
         **schema,
@@ -95,7 +95,7 @@ _ENTITY = object_schema(
         "arrows": _list(_ARROW),
         "cubes": _list(_CUBE),
         "lines": _list(_LINE),
-        # The primitives that nothing here is drawn with.
+        # The primitives that are not used here.
         **{
             name: _list({"type": "object"})
             for name in ("spheres", "cylinders", "triangles", "texts", "models")
@@ -123,7 +123,7 @@ _FIELD = object_schema(
     "foxglove.PackedElementField",
 )
 
-#: By their names.
+#: The schemas by name.
 SCHEMAS: dict[str, Schema] = {
     schema["title"]: schema
     for schema in (
@@ -230,7 +230,7 @@ def cube(lower: Floats, upper: Floats, height: float, colour: Colour) -> Message
 
 
 def arrow(length: float, colour: Colour) -> Message:
-    """From the origin of its frame along the x axis."""
+    """An arrow from the origin of its frame along the x axis."""
     return {
         "pose": pose(np.zeros(2)),
         "shaft_length": 0.7 * length,
@@ -251,13 +251,13 @@ def scene(
     arrows: Optional[list[Message]] = None,
     follows_frame: bool = False,
 ) -> Message:
-    """One entity, which replaces the one of this name on the same topic."""
+    """One entity, which replaces that of the same name on the same topic."""
     empty: list[Message] = []
     entity = {
         "timestamp": time(nanoseconds),
         "frame_id": frame,
         "id": name,
-        "lifetime": {"sec": 0, "nsec": 0},  # until it is replaced
+        "lifetime": {"sec": 0, "nsec": 0},  # 0: until replaced
         "frame_locked": follows_frame,
         "metadata": empty,
         "arrows": arrows or [],

@@ -1,4 +1,4 @@
-"""Episodes as MCAP (https://mcap.dev), with messages in JSON that Foxglove shows."""
+"""Episodes as MCAP (https://mcap.dev), with JSON messages that Foxglove can show."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from qsmpc.exports import foxglove
 from qsmpc.exports.contents import Contents, DriveMap, Floats, Series
 
 _WORLD, _VEHICLE = "world", "vehicle"
-# Of the size of the map.
+# As a fraction of the map's size.
 _LINE, _BOLD, _ARROW, _HEIGHT = 0.003, 0.006, 0.03, 0.02
 _POINT = np.dtype([("x", "<f8"), ("y", "<f8"), ("z", "<f8"), ("weight", "<f8"), ("stage", "<u2")])
 
 
 class Sent(NamedTuple):
-    """A message of a topic at a time."""
+    """A message on a topic at a time."""
 
     nanoseconds: int
     topic: str
@@ -32,7 +32,7 @@ class Sent(NamedTuple):
 
 
 class _File:
-    """Collects messages, and writes them in the order of their times."""
+    """Collects messages and writes them in chronological order."""
 
     def __init__(self, title: str) -> None:
         self.bytes = io.BytesIO()
@@ -61,7 +61,7 @@ class _File:
 
 
 def _once(area: DriveMap, path: Floats) -> Iterator[Sent]:
-    """What stands still, at time 0."""
+    """Static content, at time 0."""
     size = area.size
     cubes = [
         foxglove.cube(
@@ -108,7 +108,7 @@ def _poses(contents: Contents, area: DriveMap) -> Iterator[Sent]:
 
 
 def _lines(contents: Contents, area: DriveMap) -> Iterator[Sent]:
-    """Ellipse and plan of each period; an empty scene where there is none."""
+    """Ellipse and plan of each period; an empty scene if there are none."""
     kinds = {"/belief/ellipse": (area.belief_ellipses(), shown.GREEN)}
     if contents.episode.stages > 0:
         kinds["/plan"] = (area.plans(), shown.ORANGE)
@@ -150,7 +150,7 @@ def _groups(contents: Contents) -> dict[str, list[Series]]:
 
 
 def _numbers(name: str, group: list[Series]) -> Iterator[Sent]:
-    """A message for each time, with a key for each number that is known then."""
+    """One message per time, with a key for each number known at that time."""
     messages: dict[int, foxglove.Message] = {}
     for series in group:
         for at, value in zip(series.nanoseconds, series.values):
@@ -164,7 +164,7 @@ def _number_schema(name: str, group: list[Series]) -> foxglove.Schema:
     properties: dict[str, Any] = {"timestamp": foxglove.TIME}
     for series in group:
         properties[series.name] = {**foxglove.NUMBER, "description": series.unit or "no unit"}
-    # Numbers that are not known are left out: JSON has none that is not finite.
+    # Unknown numbers are left out: JSON has no non-finite numbers.
     return foxglove.object_schema(properties, f"qsmpc.{name}", required=["timestamp"])
 
 

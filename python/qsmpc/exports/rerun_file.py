@@ -17,13 +17,13 @@ from qsmpc.exports.contents import Contents, DriveMap, Floats, Series
 
 TIMELINE = "time"
 _LEVELS = {shown.INFO: "INFO", shown.WARNING: "WARN", shown.ERROR: "ERROR"}
-# Of the size of the map.
+# As a fraction of the map's size.
 _LINE, _BOLD, _MARK, _VEHICLE, _HEIGHT = 0.0015, 0.003, 0.006, 0.03, 0.02
 
 
 @contextmanager
 def _strict() -> Iterator[None]:
-    """Rerun raises what it would else say in a warning and leave out of the file."""
+    """Makes Rerun raise what it would otherwise only warn of and leave out of the file."""
     before = rr.strict_mode()
     rr.set_strict_mode(True)
     try:
@@ -44,17 +44,17 @@ def _in_space(points: Floats, height: float = 0.0) -> Floats:
 class _Recording:
     def __init__(self, contents: Contents) -> None:
         self.contents = contents
-        # The same for the same drive, so that viewers show it once.
+        # The same drive gets the same id, so that viewers show it only once.
         digest = hashlib.sha256(contents.scenario.to_yaml().encode())
         digest.update(contents.episode.states.tobytes() + contents.episode.inputs.tobytes())
         self.stream = rr.RecordingStream("qsmpc", recording_id=digest.hexdigest()[:32])
         if not rr.is_enabled(self.stream):
             raise RuntimeError("export_rerun: Rerun is switched off by the environment (RERUN)")
-        # In memory, for Rerun waits without end for a file on a disk that is full.
+        # In memory: with a file on a full disk, Rerun would wait forever.
         self.memory = self.stream.memory_recording()
 
     def content(self) -> bytes:
-        """The recording as a file has it."""
+        """The recording as the bytes of a file."""
         contents = self.contents
         self.stream.send_recording_name(contents.title)
         lines = [f"| {name} | {words} |" for name, words in contents.about().items()]
@@ -130,7 +130,7 @@ class _Recording:
         )
 
     def strips_over_time(self, path: str, strips: Floats, colour: Any, width: float) -> None:
-        """A line for each period (steps × points × 2), none where it is not a number."""
+        """A line for each period (steps × points × 2); none where it is NaN."""
         assert self.contents.map is not None
         known = np.isfinite(strips).all(axis=(1, 2)) if strips.size else np.zeros(len(strips), bool)
         self.static(
@@ -143,7 +143,7 @@ class _Recording:
             self.over_time(path, times, columns.partition(known.astype(int)))
 
     def points_over_time(self, path: str, points: Floats, colour: Any) -> None:
-        """A point for each period (steps × 2), none where it is not a number."""
+        """A point for each period (steps × 2); none where it is NaN."""
         assert self.contents.map is not None
         known = np.isfinite(points).all(axis=1)
         self.static(
@@ -177,7 +177,7 @@ class _Recording:
             )
         if area.body():
             self.static("world/vehicle/body", self.lines(area.body(), shown.SKY, _BOLD))
-        # A piece of the way for each period: the view shows those up to its time.
+        # A segment of the path for each period: the view shows those up to its time.
         pieces = np.stack([places[:-1], places[1:]], axis=1)
         if len(pieces):
             self.static(
@@ -201,7 +201,7 @@ class _Recording:
             self.strips_over_time("world/plan", area.plans(), shown.ORANGE, _LINE)
 
     def add_particles(self, area: DriveMap) -> None:
-        """Points of each stage with their weights; as large as these say."""
+        """Adds the points of each stage with their weights, which determine their size."""
         episode = self.contents.episode
         if not episode.has_particles:
             return
@@ -225,7 +225,7 @@ class _Recording:
 
 
 def _blueprint(contents: Contents) -> rrb.Blueprint:
-    """What a viewer shows of the recording at first."""
+    """The initial layout of the recording in a viewer."""
     groups = list(dict.fromkeys(series.group for series in contents.series()))
     plots = [
         rrb.TimeSeriesView(origin=group, name=group)

@@ -1,4 +1,4 @@
-// A controller that steers straight on, and in period 2 does what options.mode says.
+// A controller that steers straight ahead, and in period 2 behaves as options.mode says.
 #include <chrono>
 #include <limits>
 #include <stdexcept>

@@ -48,7 +48,7 @@ def main():
     options = scenario["options"]
     mode = options.get("mode", "good")
     if "pids" in options:
-        # A child in a session of its own, which nothing but a kill ends.
+        # A child in its own session, which only a kill ends.
         child = subprocess.Popen(
             [sys.executable, "-c",
              "import os, signal, time; os.setsid(); signal.signal(signal.SIGTERM, signal.SIG_IGN)\n"

@@ -77,7 +77,7 @@ def make(index):
     side = 1.0 if index % 2 else -1.0
     lower_x = random.uniform(0.55, 0.75)
     width = random.uniform(0.1, 0.4)
-    # The block reaches from far on one side to a little beyond the middle of the way.
+    # The block extends from far on one side to slightly beyond the middle of the path.
     beyond = random.uniform(0.0, 0.05)
     ys = sorted((-side * beyond, side * random.uniform(1.5, 2.0)))
     heading = 0.5 * side * random.uniform(-0.5, 0.3)
@@ -108,7 +108,7 @@ def main():
         problem = make(index)
         index += 1
         best = optimum(problem)
-        if best is None:  # the block cannot be avoided by every path
+        if best is None:  # not every path can avoid the block
             continue
         problem["cost"], problem["turns"] = best
         problems.append(problem)

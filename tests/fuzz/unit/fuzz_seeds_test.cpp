@@ -1,5 +1,5 @@
-// Every reader of outside text reads or refuses its seeds, inputs that were findings once among
-// them, and variations of them. scripts/fuzz looks for more, guided by what they reach.
+// Every reader of external text reads or refuses its seeds, which include past findings, and
+// variations of them. scripts/fuzz searches further, guided by coverage.
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -24,7 +24,7 @@ using Draw = std::mt19937_64;
 
 std::size_t below(std::size_t count, Draw& draw) { return count == 0 ? 0 : draw() % count; }
 
-/// A few changes of the kinds that parsers stumble over.
+/// A few of the changes that typically break parsers.
 std::string varied(std::string text, const std::string& other, Draw& draw) {
   static const std::vector<std::string> tokens = {"[",
                                                   "]",

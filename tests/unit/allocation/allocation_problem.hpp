@@ -1,4 +1,4 @@
-// What planners and controllers are rehearsed on before their allocations are counted.
+// Problems on which planners and controllers are run in before their allocations are counted.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace qsmpc::testing {
 
-/// A problem of some size; there is none of the rarer settings that this does not name.
+/// A problem of moderate size; rarer settings not named here are off.
 struct Case {
   std::string system;
   bool closed_loop = false;

@@ -8,21 +8,21 @@
 
 #include "harness/threads/sanitizers.hpp"
 
-// Sanitizers have an allocator of their own, and tell of it; elsewhere the functions of the C
-// library, which operator new and Eigen call, are replaced by some that count and pass on to it.
+// Sanitizers have their own allocator and report on it; otherwise the functions of the C library,
+// which operator new and Eigen call, are replaced by wrappers that count.
 #define QSMPC_SANITIZED (QSMPC_ADDRESS_SANITIZER || QSMPC_THREAD_SANITIZER)
 
 namespace {
 
 std::atomic<bool> counting{false};
 std::atomic<std::size_t> counted{0};
-// Set in a thread that is about to print, which may allocate.
+// Set in a thread that is about to print, since printing may allocate.
 thread_local bool printing = false;
 
 void note_allocation() {
   if (!counting.load(std::memory_order_relaxed) || printing) return;
   if (counted.fetch_add(1) > 0) return;
-  // Where the first came from: on the standard error stream, for addr2line.
+  // Where the first allocation came from: printed to standard error, for addr2line.
   constexpr int kFrames = 30;
   constexpr int kStandardError = 2;
   void* frames[kFrames];

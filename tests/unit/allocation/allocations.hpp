@@ -1,11 +1,11 @@
-// Counts what the program takes from the heap.
+// Counts heap allocations of the program.
 #pragma once
 
 #include <cstddef>
 
 namespace qsmpc::testing {
 
-/// While it lives, counts allocations of every thread; one at a time.
+/// While alive, counts the allocations of every thread; one instance at a time.
 class AllocationCount {
  public:
   AllocationCount();

@@ -1,5 +1,5 @@
-// Once rehearsed, no controller of the table takes anything from the heap to decide, as long as it
-// certifies nothing: the shield does in every period.
+// After warm-up no controller of the table allocates in a decision, as long as it certifies
+// nothing; the shield certifies in every period.
 #include <cmath>
 
 #include <gtest/gtest.h>

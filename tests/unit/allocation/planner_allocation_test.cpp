@@ -1,4 +1,4 @@
-// Once rehearsed, planning takes nothing from the heap.
+// After warm-up planning does not allocate.
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -24,7 +24,7 @@ TEST(AllocationCount, sees_every_kind_of_allocation) {
   EXPECT_EQ(allocations.count(), 1U);
   vector.resize(10);
   EXPECT_EQ(allocations.count(), 2U);
-  void* volatile block = std::aligned_alloc(64, 128);  // volatile, so that it is not left out
+  void* volatile block = std::aligned_alloc(64, 128);  // volatile, so that it is not optimised away
   std::free(block);
   EXPECT_EQ(allocations.count(), 3U);
   numbers.resize(5);
@@ -48,7 +48,7 @@ TEST_P(PlannerAllocations, none_after_a_rehearsal_along_the_path) {
       EXPECT_EQ(count, 0U) << "plan " << n;
     }
     ASSERT_TRUE(std::isfinite(plan.cost.total()));
-    // As if the car were somewhere beside where it was expected.
+    // As if the car were slightly off its predicted position.
     belief.mean = plan.policy.states.col(1);
     belief.mean[1] += 0.05 * std::sin(2.0 * n);
     belief.mean[2] += 0.03 * std::cos(3.0 * n);
@@ -66,7 +66,7 @@ TEST_P(PlannerAllocations, none_for_the_same_beliefs_again) {
       const AllocationCount allocations;
       const Plan& plan = planner.plan(belief);
       const std::size_t count = allocations.count();
-      // A plan may be worked out in any of three places, all of which have been used by then.
+      // A plan may be computed in any of three places, all of which have been used by then.
       if (rehearsal == 3) {
         EXPECT_EQ(count, 0U) << "plan " << n;
       }

@@ -21,7 +21,7 @@ Scenario with_sizes(int horizon, int state, int noise, int compressed) {
   return scenario;
 }
 
-// Peaks of the process that were measured; the estimate is only to tell gigabytes from megabytes.
+// Measured peaks of the process; the estimate only has to distinguish gigabytes from megabytes.
 TEST(MemoryNeed, is_near_what_was_measured) {
   struct Measured {
     Scenario scenario;

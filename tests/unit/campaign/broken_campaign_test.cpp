@@ -1,4 +1,5 @@
-// Wrong campaign files: each is refused with file, line, key, what was found and what is expected.
+// Invalid campaign files: each is refused with file, line, key, what was found and what is
+// expected.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -109,7 +110,7 @@ TEST(BrokenCampaign, a_key_that_would_undo_another) {
   expect_refused({two_lines + "variants: {a: {controller.horizon: 3, controller: {horizon: 2}}}\n",
                   3, "variants.a.controller", "controller a second time, or after a key within it",
                   "once"});
-  // The other way round is in order: a mapping, then a key within it.
+  // The reverse order is valid: a mapping, then a key within it.
   const CampaignFolder folder;
   const Campaign campaign = folder.load(
       two_lines + "variants: {a: {controller: {horizon: 2}}}\ngrid: {controller.horizon: [5]}\n");
@@ -228,7 +229,7 @@ TEST(BrokenCampaign, a_plant_that_cannot_be_made_is_refused_before_anything_runs
   EXPECT_THAT(own.found, HasSubstr("disturbance.mass: "));
 }
 
-// Within an instant and little memory, not after ten thousand million variants.
+// Instantly and with little memory, not after enumerating ten billion variants.
 TEST(HostileCampaign, a_huge_grid_is_refused_by_its_size) {
   const CampaignFolder folder;
   std::string text = two_lines + "grid:\n";

@@ -64,7 +64,7 @@ TEST(Calibration, a_last_certificate_stands_once_more_in_its_own_bin) {
   CalibrationTally tally;
   tally.add(0, 2e-4, false);  // an episode of two periods
   tally.add(1, 5e-3, true);
-  tally.add(0, 3e-4, true);  // and one that is going on
+  tally.add(0, 3e-4, true);  // and one in progress
   const std::vector<CalibrationBin> bins = tally.result();
   const double large = exceedance_p_value({{.events = 0, .certified = 5e-3}, {1, 5e-3}});
   EXPECT_LT(large, 0.5) << "1 would hide what is in the sums";
@@ -73,7 +73,7 @@ TEST(Calibration, a_last_certificate_stands_once_more_in_its_own_bin) {
                    exceedance_p_value({{.events = 1, .certified = 5e-4}, {0, 3e-4}}));
   EXPECT_DOUBLE_EQ(tally.p_value(), exceedance_p_value({{.events = 1, .certified = 5.5e-3},
                                                         {.events = 1, .certified = 5.3e-3}}));
-  tally.add(1, 3e-4, false);  // the result took no part in it
+  tally.add(1, 3e-4, false);  // does not take part in the result
   EXPECT_DOUBLE_EQ(bin_of(tally.result(), 2e-4).p_value,
                    exceedance_p_value({{.events = 1, .certified = 8e-4}, {0, 3e-4}}));
 }
@@ -93,7 +93,7 @@ TEST(PooledCalibration, adds_counts_but_averages_the_evidence_of_variants) {
   PooledCalibration once;
   once.add(tally);
   PooledCalibration twice = once;
-  twice.add(tally);  // the same episodes: no more is known
+  twice.add(tally);  // the same episodes: no new information
   const CalibrationBin single = bin_of(once.result(), 0.02);
   const CalibrationBin pooled = bin_of(twice.result(), 0.02);
   EXPECT_EQ(pooled.periods, 2 * single.periods);
@@ -109,10 +109,10 @@ struct Simulation {
   double promise = 1.0;  ///< certified probability as a share of the true one
 };
 
-/// Episodes of up to 40 periods whose danger follows a random walk, and grows after each event: so
-/// certificates and events depend on all that happened. An episode ends at its second event. The
-/// certificate of a period is made a period ahead: what it promises covers both ways the walk may
-/// go until the period begins.
+/// Episodes of up to 40 periods whose risk follows a random walk and grows after each event, so
+/// that certificates and events depend on the whole past. An episode ends at its second event. The
+/// certificate of a period is made one period ahead: it averages over both possible moves of the
+/// risk until the period begins.
 CalibrationTally simulated(const Simulation& simulation, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform;
@@ -121,7 +121,8 @@ CalibrationTally simulated(const Simulation& simulation, std::uint64_t seed) {
     double exponent = -1.0 - 2.0 * uniform(random);
     int events = 0;
     for (int period = 0; period < 40 && events < 2; ++period) {
-      // Half of the time e⁰˙⁵ times as probable as thought, else e⁻¹ times: less than 1 on average.
+      // e⁰·⁵ times the assumed probability half of the time, else e⁻¹ times: less than 1 on
+      // average.
       const double thought = std::pow(10.0, exponent);
       const double truth = thought * std::exp(uniform(random) < 0.5 ? 0.5 : -1.0);
       const bool event = uniform(random) < truth;

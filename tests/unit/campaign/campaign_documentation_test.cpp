@@ -34,7 +34,7 @@ TEST(CampaignDocumentation, describes_every_key) {
   const CampaignFolder folder;
   const auto problems = folder.problems("scenario: a.yaml\nseeds: [0]\nzzzzzzzz: 1\n");
   ASSERT_EQ(problems.size(), 1U);
-  // "one of name, description, …": what the reader knows.
+  // "one of name, description, …": the keys known to the reader.
   std::string known = problems.front().expected.substr(std::string("one of ").size()) + ", ";
   int keys = 0;
   for (std::size_t comma = 0; (comma = known.find(", ")) != std::string::npos; ++keys) {
@@ -71,7 +71,7 @@ TEST(HostileCampaign, a_damaged_file_is_loaded_or_refused_and_nothing_else) {
       ++refused;
     }
   }
-  // Both happen often, or the damage is too mild or too wild to test anything.
+  // Both outcomes are frequent; otherwise the damage is too mild or too severe to test anything.
   EXPECT_GT(loaded, 20);
   EXPECT_GT(refused, 200);
 }

@@ -117,7 +117,7 @@ TEST(CampaignFile, scenarios_of_the_same_name_are_called_by_their_files) {
               ElementsAre("d", "a", "other"));
 }
 
-// The promise of docs/campaign.md: an episode can be driven alone, by `qsmpc run`.
+// As docs/campaign.md states: a single episode can be driven by `qsmpc run`.
 TEST(CampaignFile, the_overrides_of_a_variant_reproduce_it) {
   const CampaignFolder folder;
   const Campaign campaign = folder.load(

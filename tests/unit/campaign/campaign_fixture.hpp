@@ -14,7 +14,7 @@
 
 namespace qsmpc::testing {
 
-/// Drives of at most three short periods, with few points.
+/// Drives of at most three short periods with few points.
 inline harness::Scenario quick_scenario(int horizon = 3) {
   return harness::parse_scenario(
       fmt::format("name: quick\n"

@@ -1,4 +1,4 @@
-// What the tests of campaign files share: a folder with two scenarios and a campaign.
+// Shared by the tests of campaign files: a folder with two scenarios and a campaign.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace qsmpc::harness {
 
-/// A folder with the scenarios a.yaml ("test", line 5 the last), b.yaml ("other") and whatever a
-/// test adds.
+/// A folder with the scenarios a.yaml ("test", line 5 is the last), b.yaml ("other") and files that
+/// a test adds.
 class CampaignFolder : public TemporaryFolder {
  public:
   CampaignFolder() {
@@ -28,7 +28,7 @@ class CampaignFolder : public TemporaryFolder {
     return load_campaign(campaign(text));
   }
 
-  /// What is wrong with a campaign, its folder left out of file names.
+  /// The problems of a campaign, with its folder removed from file names.
   [[nodiscard]] std::vector<InputError::Where> problems(const std::string& text) const {
     std::vector<InputError::Where> problems = validate_campaign_file(campaign(text));
     for (InputError::Where& where : problems) {
@@ -37,7 +37,7 @@ class CampaignFolder : public TemporaryFolder {
     return problems;
   }
 
-  /// The only thing that is wrong with a campaign; the loader must throw just that.
+  /// The single problem of a campaign; the loader must report exactly one.
   [[nodiscard]] InputError::Where problem(const std::string& text) const {
     const std::vector<InputError::Where> all = problems(text);
     EXPECT_EQ(all.size(), 1U) << text;

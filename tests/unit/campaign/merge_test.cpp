@@ -27,7 +27,7 @@ using testing::TemporaryFolder;
 
 class Merge : public ::testing::Test {
  protected:
-  /// A shard of made-up rows: all of its seeds but `without`.
+  /// A shard of made-up rows: all of its seeds except `without`.
   std::string shard(const Campaign& campaign, const Shard& part,
                     const std::vector<std::uint64_t>& without = {}) {
     const std::string folder = work / fmt::format("shard{}", ++made);
@@ -99,7 +99,7 @@ TEST_F(Merge, joins_what_shards_drove_into_what_one_run_drives) {
       });
     }
   }
-  // A merged campaign is one that is done.
+  // A merged campaign counts as done.
   EXPECT_EQ(run_campaign(campaign, out(), {}).fresh, 0);
 }
 
@@ -195,7 +195,7 @@ TEST_F(Merge, refuses_shards_of_other_campaigns) {
               HasSubstr("figure.risk_against_cost: found horizons: two, three, expected none"));
 }
 
-/// A store of the episodes of `seeds` in a folder of its own.
+/// A store of the episodes of `seeds` in its own folder.
 class MergeOfParts : public Merge {
  protected:
   std::string part(const std::vector<std::uint64_t>& seeds, double more_cost = 0.0,
@@ -273,7 +273,7 @@ TEST_F(MergeOfParts, a_store_may_be_replaced_by_what_it_is_a_part_of) {
   EXPECT_EQ(merge_stores({part({})}, out(), policy).episodes, 0);
   EXPECT_EQ(merge_stores({out(), part({5})}, out(), policy).episodes, 2);
   {
-    // Its log is not taken for that of the store that replaces it.
+    // Its log is not mistaken for that of the store that replaces it.
     Store store(out(), stored_campaign(campaign, {}), stored_variants(campaign, {"", ""}),
                 campaign.seeds, false);
     store.add(testing::example_row(0, 8), false);

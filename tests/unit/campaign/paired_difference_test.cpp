@@ -46,7 +46,7 @@ TEST(PoissonWeights, have_the_law_of_a_poisson_number_of_mean_one) {
   const double draws = static_cast<double>(kPairs) * kBootstrapReplicates;
   double probability = std::exp(-1.0);
   for (int k = 0; k < 9; ++k) {
-    // Five standard deviations of a binomial count, and a rounding of half a draw of 16 bits.
+    // Five standard deviations of a binomial count, plus rounding by half a 16-bit step.
     const double tolerance = 5.0 * std::sqrt(probability / draws) + 0.5 / 65536.0;
     EXPECT_NEAR(counts[k] / draws, probability, tolerance) << k;
     probability /= k + 1;
@@ -64,7 +64,7 @@ TEST(PoissonWeights, depend_on_the_seed_alone_and_differ_between_replicates_and_
   const auto correlation = [](const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {
     return ((a - 1.0) * (b - 1.0)).mean();
   };
-  // Five standard deviations of a mean of products of independent numbers of variance 1.
+  // Five standard deviations of a mean of products of independent numbers with variance 1.
   const double tolerance = 5.0 / std::sqrt(kBootstrapReplicates);
   EXPECT_NEAR(correlation(first, other), 0.0, tolerance);
   for (const int lag : {1, 4, 16}) {
@@ -186,16 +186,16 @@ TEST(BootstrapMean, has_the_interval_of_a_normal_sample) {
   const BootstrapMean mean = bootstrapped(sample, 0);
   const double deviation = std::sqrt((sample.array() - sample.mean()).square().mean() / kSize);
   const double quantile = boost::math::quantile(boost::math::normal(), 1.0 - kCampaignTail);
-  // The 10th of 2000 values is a quantile between those of 0.2 % and 0.95 % (2σ of its rank): 0.25
-  // standard deviations about that of 0.5 %.
+  // The 10th of 2000 values lies between the quantiles of 0.2 % and 0.95 % (2σ of its rank): within
+  // 0.25 standard deviations of the 0.5 % quantile.
   EXPECT_NEAR(mean.interval().lower, sample.mean() - quantile * deviation, 0.3 * deviation);
   EXPECT_NEAR(mean.interval().upper, sample.mean() + quantile * deviation, 0.3 * deviation);
   EXPECT_NEAR(mean.mean(), sample.mean(), 1e-12);  // rounding of the sum
 }
 
-// Skewed numbers, as costs are: exponential ones of mean 1. The percentile interval of 300 of them
-// misses the mean in 1.3 % of many samples, not in 1 %, by their skewness; 14 of 400 would be
-// almost four standard deviations above that.
+// Skewed numbers, like costs: exponential with mean 1. The percentile interval of 300 of them
+// misses the mean in 1.3 % of many samples instead of 1 %, because of their skewness; 14 of 400
+// would be almost four standard deviations above that.
 TEST(BootstrapMean, has_an_interval_that_covers_the_true_mean) {
   constexpr int kSamples = 400;
   constexpr int kSize = 300;

@@ -1,4 +1,4 @@
-// Campaigns that look for rare outcomes: file, store, statistics and what is written of them.
+// Campaigns that look for rare outcomes: file, store, statistics and output.
 #include <algorithm>
 #include <atomic>
 #include <filesystem>

@@ -20,10 +20,10 @@ using ::testing::HasSubstr;
 
 bool never() { return false; }
 
-/// Without certificates, which take longer than everything else.
+/// No certificates: they take longer than everything else.
 const RareSettings kBare{.splitting = {.particles = 20}, .certify = false};
 
-/// A point that is held at 0 and leaves [-limit, limit] seldom.
+/// A point that is held at 0 and rarely leaves [-limit, limit].
 Scenario held_point(const std::string& limit, const std::vector<std::string>& more = {}) {
   return parse_scenario(
       "name: held\nmodel: {system: double_integrator}\nplant: {kind: analytic}\n"
@@ -91,7 +91,7 @@ TEST(RareRun, estimates_what_is_certified_of_a_drive) {
     }
   }
   EXPECT_GT(split, 0.0);
-  // Neither sum of ten is sharp.
+  // Neither sum of ten is accurate.
   EXPECT_LT(split, 5.0 * plain);
   EXPECT_GT(split, 0.2 * plain);
 }

@@ -47,7 +47,7 @@ TEST(RareStatistics, has_the_mean_of_the_estimates_with_their_limits) {
 TEST(RareStatistics, is_worth_the_plain_drives_with_the_same_variance) {
   const RareStatistics statistics =
       statistics_of({row_of(1e-6), row_of(3e-6), row_of(2e-6), row_of(2e-6)});
-  // The variance of the mean of four is (2/3)/4 (1e-6)²; a plain drive has ten periods.
+  // The mean of four has variance (2/3)/4 (1e-6)²; a plain drive has ten periods.
   EXPECT_NEAR(statistics.worth_drives, 2e-6 / (1e-12 / 6.0), 100.0);
   EXPECT_NEAR(statistics.worth_periods, 10.0 * statistics.worth_drives, 1e-3);
   EXPECT_NEAR(statistics.gain(), statistics.worth_periods / 56'000.0, 1e-9);

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using testing::quick_campaign;
 using testing::TemporaryFolder;
 
-/// All rows with their periods, without what the clock says.
+/// All rows with their periods, without wall-clock values.
 std::vector<EpisodeRow> rows_in(const std::string& folder) {
   const StoreReader store(folder);
   std::vector<EpisodeRow> rows;
@@ -151,7 +151,7 @@ TEST(CampaignRunner, stops_early_after_the_same_seeds_when_it_was_interrupted) {
   const CampaignProgress end = run_campaign(early_campaign(), stopped.path(), {.jobs = 2});
   (void)run_campaign(early_campaign(), whole.path(), {});
   EXPECT_EQ(rows_in(stopped.path()), rows_in(whole.path()));
-  // Started once more, there is nothing to do.
+  // A restart has nothing to do.
   const CampaignProgress again = run_campaign(early_campaign(), stopped.path(), {});
   EXPECT_EQ(again.fresh, 0);
   EXPECT_EQ(again.stopped_after, end.stopped_after);
@@ -217,7 +217,7 @@ TEST(CampaignRunner, keeps_the_traces_of_failures_and_of_a_sample) {
   campaign.variants.pop_back();
   campaign.traces = TraceKeeping::kFailures;
   campaign.trace_sample = 1;
-  // One period: from there on the target is everywhere.
+  // One period per drive: then every state is at the target.
   campaign.variants[0].resolved.target.radius = 100.0;
   (void)run_campaign(campaign, folder.path(), {});
   for (const EpisodeRow& row : rows_in(folder.path())) {
@@ -233,7 +233,7 @@ TEST(CampaignRunner, keeps_no_trace_unless_asked) {
   EXPECT_FALSE(fs::exists(folder / "episodes"));
 }
 
-/// One whose car is thrown out of the simulator's range by its disturbance.
+/// A campaign in which the disturbance throws the car out of the simulator's range.
 Campaign faulty_campaign() {
   Campaign campaign = testing::quick_campaign(2);
   campaign.variants.pop_back();

@@ -1,4 +1,4 @@
-// From a store to what is shown of it.
+// From a store to the displayed statistics.
 #include "harness/campaign/statistics/statistics.hpp"
 
 #include <algorithm>
@@ -26,8 +26,8 @@ using Json = nlohmann::json;
 
 constexpr std::int64_t kSeeds = 20;
 
-/// Two variants of kSeeds seeds; of the second one, the last seed is not done and one faulted.
-/// `time` stands for all that is wall clock.
+/// Two variants with kSeeds seeds; in the second, the last seed is not done and one has faulted.
+/// `time` stands for all wall-clock values.
 void fill(const std::string& folder, double time = 1.0) {
   Campaign campaign = testing::quick_campaign(kSeeds);
   campaign.variants[1].name = "name, with \"quotes\" and a length that does not fit its column";
@@ -68,7 +68,7 @@ TEST(CampaignStatistics, say_of_which_variants_no_certificate_is_a_bound) {
   EXPECT_EQ(table.find("NO BOUND", said + 1), std::string::npos);
 }
 
-/// Of ten seeds of which the rule has left six, unless it has not stopped.
+/// Ten seeds, of which the rule used six, unless it has not stopped.
 CampaignStatistics statistics_with_a_rule(bool has_stopped) {
   const testing::TemporaryFolder folder;
   Campaign campaign = testing::quick_campaign(10);
@@ -119,7 +119,7 @@ CampaignStatistics filled_statistics(double time = 1.0) {
   return campaign_statistics(StoreReader(folder.path()));
 }
 
-/// `json` without what stands under the key `key`, at any depth.
+/// `json` without the values under `key`, at any depth.
 Json without(Json json, const std::string& key) {
   if (json.is_object()) json.erase(key);
   for (Json& entry : json) {
@@ -169,7 +169,7 @@ TEST(CampaignStatistics, pair_what_both_variants_have_done) {
   const MeanDifference& cost = difference.quantities[2];
   EXPECT_EQ(cost.pairs, kSeeds - 2);
   EXPECT_EQ(cost.left_out, 1);
-  // The second variant's costs are 1 + 0.1 n higher, n = 0 … 18 but for 3.
+  // The second variant's costs are higher by 1 + 0.1 n, n = 0 … 18 except 3.
   EXPECT_NEAR(cost.mean, 1.0 + 0.1 * (171.0 - 3.0) / 18.0, 1e-12);  // rounding
   EXPECT_GT(cost.interval.lower, 1.0);
 }
@@ -262,7 +262,7 @@ TEST(CampaignTable, says_first_what_became_of_the_drives) {
             std::string::npos);
 }
 
-/// Fields of a line, quotes considered.
+/// Number of fields of a line, respecting quotes.
 std::size_t field_count(const std::string& line) {
   std::size_t count = 1;
   bool quoted = false;

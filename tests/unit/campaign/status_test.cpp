@@ -56,7 +56,7 @@ TEST_F(Status, tells_who_works_on_it_and_how_fast) {
   const CampaignStatus status = campaign_status(folder.path());
   ASSERT_TRUE(status.running);
   EXPECT_EQ(status.running->process, ::getpid());
-  // The window is from one second to a minute long, by the clock.
+  // The window is between one second and one minute long, by the clock.
   EXPECT_GE(status.rate, 1.0 / 60.0);
   EXPECT_LE(status.rate, 1.0);
   ASSERT_TRUE(status.left);

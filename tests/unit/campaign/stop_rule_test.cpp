@@ -27,7 +27,7 @@ std::vector<std::vector<bool>> made_events() {
   return events;
 }
 
-/// What the rule says, found by looking at every number of seeds.
+/// The rule's answer, found by checking every number of seeds.
 std::int64_t plain_answer(const std::vector<std::vector<bool>>& events) {
   std::vector<std::int64_t> counts(events.size());
   for (std::int64_t n = 1; n <= kSeeds; ++n) {

@@ -1,4 +1,4 @@
-// The file of a store: what is none, what is damaged, and what an earlier version made.
+// A store's file: not a store, damaged, or made by an earlier version.
 
 #include <cmath>
 #include <cstddef>
@@ -85,7 +85,7 @@ TEST_F(StoreFileTest, a_checksum_whose_episode_is_gone_is_seen) {
   EXPECT_THROW(StoreReader(folder.path()).verify(), IoError);
 }
 
-/// A store as schema `schema` had it, without an episode.
+/// An empty store with schema version `schema`.
 void make_old_store(const std::string& path, std::size_t schema) {
   SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   const std::vector<Migration>& all = store_migrations();
@@ -97,7 +97,7 @@ void make_old_store(const std::string& path, std::size_t schema) {
   }
 }
 
-/// A store as the first schema had it, with one episode.
+/// A store of the first schema version with one episode.
 void make_first_store(const std::string& path) {
   make_old_store(path, 1);
   SQLite::Database database(path, SQLite::OPEN_READWRITE);
@@ -122,7 +122,7 @@ TEST_F(StoreFileTest, of_an_older_schema_is_brought_up_to_date_with_its_episodes
 }
 
 TEST_F(StoreFileTest, periods_of_an_older_schema_keep_their_numbers_and_checksums) {
-  // The checksum is that which the version with this schema has written.
+  // The checksum is the one written by the version with this schema.
   make_old_store(path(), 6);
   {
     SQLite::Database store = database();
@@ -155,7 +155,7 @@ TEST_F(StoreFileTest, periods_of_an_older_schema_keep_their_numbers_and_checksum
   EXPECT_EQ(periods[1].ocp_ms, 1e-9);
   EXPECT_EQ(periods[2].ocp_ms, 3.0);
   EXPECT_NO_THROW(store.verify());
-  // Whoever reads the former tables by SQL finds what was in them.
+  // Reading the former tables by SQL still gives their contents.
   SQLite::Database sql = database();
   EXPECT_EQ(sql.execAndGet("SELECT certified FROM period WHERE period = 0").getDouble(), 0.1);
   EXPECT_EQ(sql.execAndGet("SELECT sum(unsafe) FROM period WHERE seed = 6").getInt(), 2);

@@ -1,4 +1,4 @@
-// A store in a folder of its own.
+// A store in its own folder.
 #pragma once
 
 #include <filesystem>
@@ -45,7 +45,7 @@ class StoreFolder : public ::testing::Test {
   SQLite::Database database() const {
     return {folder.path() + "/" + harness::kStoreFile, SQLite::OPEN_READWRITE};
   }
-  /// The bytes of the store, with all that is in its log.
+  /// The bytes of the store, including its log.
   std::string content() const {
     database().exec("PRAGMA journal_mode = DELETE");
     std::ifstream file(path(), std::ios::binary);

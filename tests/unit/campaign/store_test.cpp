@@ -140,8 +140,8 @@ TEST_F(StoreTest, a_reader_sees_one_state_while_episodes_are_added) {
   EXPECT_THAT(StoreReader(folder.path()).outcomes(), ElementsAre(Pair("reached", 2)));
 }
 
-// Rows of versions that had one word for both parts of the unsafe set, and called a drive that went
-// on after it was unsafe by how it ended.
+// Rows of versions with a single outcome for both parts of the unsafe set, in which a drive that
+// continued after being unsafe was named by how it ended.
 TEST_F(StoreTest, former_drives_that_were_unsafe_have_the_former_word) {
   Store store = open(testing::quick_campaign(6));
   const auto add = [&](std::uint64_t seed, const char* outcome, bool unsafe) {
@@ -204,7 +204,7 @@ TEST_F(StoreTest, refuses_a_changed_campaign_and_says_what_changed) {
   EXPECT_THAT(refusal(other), HasSubstr("--update"));
 }
 
-// What a figure shows changes no episode.
+// Changes of a figure's families affect no episode.
 TEST_F(StoreTest, takes_the_families_of_a_figure_as_they_are_now) {
   Campaign campaign = testing::quick_campaign();
   open(campaign).add(testing::example_row(0, 5), false);

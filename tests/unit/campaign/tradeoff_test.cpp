@@ -19,7 +19,7 @@ namespace tradeoff_test {
 
 constexpr std::int64_t kDrives = 20;
 
-/// Two scenarios with three settings each, of which two are a family.
+/// Two scenarios with three settings each, two of which form a family.
 Campaign family_campaign() {
   Campaign campaign = testing::quick_campaign(kDrives);
   campaign.variants.clear();
@@ -35,8 +35,8 @@ Campaign family_campaign() {
   return campaign;
 }
 
-/// Of each variant the drive n = 1 collides, n = 2 times out, n = 3 faults; the others cost
-/// 100 + n. Of variant 5 none reaches the target.
+/// In each variant the drive n = 1 collides, n = 2 times out, n = 3 faults; the others cost 100 +
+/// n. In variant 5 none reaches the target.
 void fill(const std::string& folder, const Campaign& campaign, const Shard& part = {}) {
   Store store(folder, stored_campaign(campaign, part),
               stored_variants(campaign, std::vector<std::string>(campaign.variants.size())),

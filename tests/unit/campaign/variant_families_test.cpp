@@ -1,4 +1,4 @@
-// The key `figure` of campaign files: what it asks for, and what is refused.
+// The key `figure` of campaign files: what it selects, and what is refused.
 #include "harness/campaign/plan/variant_families.hpp"
 
 #include <random>

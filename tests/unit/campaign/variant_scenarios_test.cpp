@@ -1,4 +1,4 @@
-// Scenarios of a campaign's variants: their file is read once, and a plant is made once.
+// Scenarios of a campaign's variants: their file is read once, and each plant is made once.
 
 #include <filesystem>
 #include <string>
@@ -53,7 +53,7 @@ TEST(PlantChecks, a_noise_that_is_added_to_the_state_makes_no_other_plant) {
     return checks.choose(scenario, draft.plants.front(), draft.scenarios.front(), {}).has_value();
   };
   EXPECT_TRUE(chosen(0.01));
-  // It is not loaded once more: what is there now would be refused.
+  // The file is not loaded again: its new contents would be refused.
   (void)folder.file("body.xml", "<mujoco><worldbody><oops/></worldbody></mujoco>");
   EXPECT_TRUE(chosen(0.02));
   scenario.model.parameters["speed"] = 2.0;

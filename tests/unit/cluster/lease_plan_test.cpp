@@ -59,7 +59,7 @@ TEST(LeasePlan, holds_seeds_that_are_listed) {
   EXPECT_EQ(read_lease_plan(folder.path()).seeds, campaign.seeds);
 }
 
-/// What is said of a plan of which `change` made something else.
+/// The error message for a plan altered by `change`.
 std::string refusal_after(const std::function<void(nlohmann::ordered_json&)>& change) {
   const TemporaryFolder folder;
   write_lease_plan(lease_plan(example_campaign(), 3), folder.path());

@@ -1,4 +1,4 @@
-// Leases are driven by one task at a time where all are alive, and by another where one is lost.
+// Each lease is driven by one task while all are alive, and by another one if its task is lost.
 #include "harness/cluster/lease_queue.hpp"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ class LeaseQueues : public ::testing::Test {
     }
   }
 
-  /// The queue of a task whose clock is this test's, and `offset` from it.
+  /// The queue of a task with the test's clock shifted by `offset`.
   [[nodiscard]] std::unique_ptr<LeaseQueue> queue(const LeaseHolder& holder,
                                                   std::int64_t leases = 1,
                                                   LeaseQueue::Clock::duration offset = {}) {
@@ -56,7 +56,7 @@ class LeaseQueues : public ::testing::Test {
   LeaseQueue::Clock::time_point now = LeaseQueue::Clock::now();
 };
 
-/// Runs `work` with 0 … count − 1 on threads that begin together.
+/// Runs `work` with 0 … count − 1 on threads that start simultaneously.
 void race(int count, const std::function<void(int)>& work) {
   std::latch ready(count);
   std::vector<std::jthread> threads;
@@ -158,7 +158,7 @@ TEST_F(LeaseQueues, let_one_take_over_who_took_over_and_is_lost_as_well) {
   ASSERT_EQ(third->claim(), std::nullopt);
   now += seconds(101);
   ASSERT_EQ(second->claim(), 0);
-  // What the third has seen of the first says nothing of the second.
+  // What the third has observed of the first does not apply to the second.
   EXPECT_EQ(third->claim(), std::nullopt);
   now += seconds(101);
   EXPECT_EQ(third->claim(), 0);

@@ -1,4 +1,4 @@
-// Tasks and what is gathered of them, against one process that drives all.
+// Tasks and their gathered results, compared with one process that drives everything.
 #include "harness/cluster/worker.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::TemporaryFolder;
 
-/// All rows with their periods, without what the clock says.
+/// All rows with their periods, without wall-clock values.
 std::vector<EpisodeRow> rows_in(const std::string& folder) {
   const StoreReader store(folder);
   store.verify();
@@ -65,7 +65,7 @@ class Tasks : public ::testing::Test {
     return gather_tasks(folder.path(), {.tasks_have_ended = true});
   }
 
-  /// The rows that one process drives.
+  /// The rows of a single process.
   static std::vector<EpisodeRow> rows_of_one(const Campaign& campaign) {
     const TemporaryFolder one;
     (void)run_campaign(campaign, one.path(), {});
@@ -94,7 +94,7 @@ TEST_F(Tasks, drive_what_one_process_drives) {
   EXPECT_EQ(gathered.episodes, 20);
   EXPECT_EQ(gathered.total, 20);
   EXPECT_EQ(rows_in(folder.path()), rows_of_one(campaign));
-  // A campaign that is gathered is one that is done.
+  // A gathered campaign counts as done.
   EXPECT_EQ(run_campaign(campaign, folder.path(), {}).fresh, 0);
 }
 
@@ -110,7 +110,7 @@ TEST_F(Tasks, give_back_what_they_have_begun_when_asked_to_stop) {
   ASSERT_EQ(claims.size(), 1U);
   EXPECT_TRUE(claims[0].given_back);
   EXPECT_EQ(task_reports(folder.path()).at(0).word, TaskWord::kStopped);
-  // What it drove of the lease is not lost, nor is it there twice.
+  // The part of the lease that it drove is neither lost nor duplicated.
   EXPECT_EQ(gather().episodes, stopped.episodes);
   const WorkerEnd other = work({.task = 2});
   EXPECT_TRUE(other.all_finished);
@@ -140,7 +140,7 @@ TEST_F(Tasks, have_nothing_to_do_where_all_is_finished) {
   EXPECT_EQ(task_reports(folder.path()).size(), 1U);
 }
 
-/// Puts a made-up store of a task into the folder: rows of all episodes, changed by `change`.
+/// Puts a task's made-up store into the folder: rows of all episodes, changed by `change`.
 void put_store(const std::string& folder, int task,
                const std::function<void(EpisodeRow&)>& change) {
   const LeasePlan plan = read_lease_plan(folder);
@@ -218,7 +218,7 @@ TEST_F(Tasks, that_still_work_are_not_gathered) {
   } catch (const IoError& error) {
     EXPECT_THAT(error.what(), HasSubstr("task 1 (process"));
   }
-  // It was killed, then.
+  // The task was killed, then.
   EXPECT_EQ(gather_while([] {}).episodes, 2);
   // Tasks of earlier launches are known to have ended.
   write_task_launch({.launch = 2}, folder.path());
@@ -240,7 +240,7 @@ TEST_F(Tasks, fail_in_one_line_where_the_folder_vanishes) {
   } catch (const IoError& error) {
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
   }
-  // It comes back, and another drives what was begun.
+  // The folder comes back, and another task drives what was begun.
   fs::rename(folder / "gone", folder / "cluster");
   EXPECT_TRUE(work({.task = 2, .jobs = 2}).all_finished);
   EXPECT_EQ(gather().episodes, 40);

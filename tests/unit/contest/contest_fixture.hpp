@@ -16,7 +16,7 @@
 
 namespace qsmpc::testing {
 
-/// Two controllers on one map with three seeds, with `more` after it.
+/// Two controllers on one map with three seeds; `more` is appended.
 inline std::string contest_text(const std::string& more = "") {
   return "controllers:\n"
          "  careful: {controller.kind: quantised}\n"
@@ -26,7 +26,7 @@ inline std::string contest_text(const std::string& more = "") {
          more;
 }
 
-/// A file of a contest, beside the map that it names.
+/// A contest file beside the map that it names.
 class ContestFolder {
  public:
   ContestFolder() { (void)folder_.file("quick.yaml", harness::to_yaml(quick_scenario())); }
@@ -37,7 +37,7 @@ class ContestFolder {
   [[nodiscard]] harness::LoadedContest load(const std::string& text) const {
     return harness::load_contest(file(text));
   }
-  /// What is wrong with a contest of this text, a line each.
+  /// The problems of a contest with this text, one per line.
   [[nodiscard]] std::string problems(const std::string& text) const {
     std::string lines;
     for (const harness::InputError::Where& where : harness::validate_contest_file(file(text))) {
@@ -52,7 +52,7 @@ class ContestFolder {
   TemporaryFolder folder_;
 };
 
-/// The store of `campaign` with `rows`, in the folder `path`, which is there.
+/// The store of `campaign` with `rows`, in the existing folder `path`.
 inline void fill_store(const harness::Campaign& campaign, const std::string& path,
                        const std::vector<harness::EpisodeRow>& rows) {
   harness::Store store(

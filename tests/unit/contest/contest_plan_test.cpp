@@ -1,4 +1,4 @@
-// The drives that a contest asks for.
+// The drives that a contest requires.
 #include "harness/contest/contest_plan.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What a contest file may say, and what is refused.
+// Valid contents of a contest file, and what is refused.
 #include <algorithm>
 #include <set>
 

@@ -1,4 +1,4 @@
-// What a contest's drives say of its controllers, and in which words.
+// The comparison of controllers drawn from a contest's drives, and its wording.
 #include "harness/contest/standings.hpp"
 
 #include <cmath>
@@ -38,7 +38,7 @@ EpisodeRow drive(std::int64_t variant, std::uint64_t seed, const std::string& ou
 }
 
 /// Two noises. `careful` always arrives; `bold` costs a tenth less, and collides on twelve seeds in
-/// the first cell and on the same twelve in the second; what it then paid does not count.
+/// the first cell and on the same twelve in the second; the costs of those drives do not count.
 class Standings : public ::testing::Test {
  protected:
   Standings() {

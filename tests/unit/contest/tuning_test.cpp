@@ -1,4 +1,4 @@
-// Which candidate the search chooses.
+// The candidate that the search chooses.
 #include "harness/contest/tuning.hpp"
 
 #include <cmath>
@@ -32,7 +32,7 @@ TEST(Tuning, of_as_many_failures_the_cheapest_is_taken_and_of_equal_ones_the_fir
             2U);
 }
 
-/// A drive of the search: what is not said is as in example_row.
+/// A drive of the search; everything else is as in example_row.
 EpisodeRow drive(std::int64_t variant, std::uint64_t seed, double cost,
                  const std::string& outcome = "reached") {
   EpisodeRow row = testing::example_row(variant, seed, outcome);
@@ -49,9 +49,9 @@ class TunedContest : public ::testing::Test {
         loaded_.search, store_,
         {// Noise 1 costs ten times as much as noise 2, and must not outvote it.
          drive(0, 50, 1000.0), drive(0, 51, 1000.0), drive(1, 50, 130.0), drive(1, 51, 130.0),
-         // The second candidate: dearer in the first cell by 10 %, cheaper in the other.
+         // The second candidate: 10 % more expensive in the first cell, cheaper in the other.
          drive(2, 50, 1100.0), drive(2, 51, 1100.0), drive(3, 50, 90.0), drive(3, 51, 90.0),
-         // The third: the cheapest of all where it arrives.
+         // The third: the cheapest where it arrives.
          drive(4, 50, 10.0), drive(4, 51, 5.0, "collision"), drive(5, 50, 10.0),
          drive(5, 51, 10.0)});
   }

@@ -29,7 +29,7 @@ TEST(BoundedLog, keeps_beginning_and_end_of_what_is_long) {
   EXPECT_THAT(log.text(), ::testing::StartsWith("100\n101\n10\n[… "));
   EXPECT_THAT(log.text(), ::testing::EndsWith("\n998\n999\n"));
   EXPECT_EQ(log.last_line(), "999");
-  // What is left out and what is kept are all of it.
+  // The omitted part and the kept part add up to the whole.
   const std::string text = log.text();
   const std::size_t mark = text.find("[… ");
   const std::size_t end = text.find(" …]\n");

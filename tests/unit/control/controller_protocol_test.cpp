@@ -1,4 +1,4 @@
-// What is said to controllers outside of the program, and what of their answers is accepted.
+// Messages to external controllers, and which of their answers are accepted.
 #include "harness/control/controller_protocol.hpp"
 
 #include <limits>

@@ -1,5 +1,4 @@
-// Drives by controllers outside of the program: what they leave, and what becomes of those that
-// fail.
+// Drives by external controllers: their results, and the handling of controllers that fail.
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -78,7 +77,7 @@ TEST_P(OutsideControllers, that_fail_end_the_drive_with_a_reason_and_the_trace_s
     EXPECT_THAT(trace.fault, HasSubstr("period 2: found "));
     EXPECT_THAT(trace.fault, HasSubstr(failure.reason));
     ASSERT_EQ(trace.steps.size(), 2U);
-    // The plant came through all of them.
+    // The plant completed all of them.
     EXPECT_EQ(completed_periods(trace), 2);
     EXPECT_EQ(EpisodeView(trace).summary().fault_of, "controller");
     const Trace read = read_trace(folder / "episode.h5");
@@ -102,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(all, OutsideControllers, ::testing::ValuesIn(kKinds),
                                                                         : "own_class";
                          });
 
-/// With plans: an external one and a class in C++ that answer the same.
+/// With plans: an external controller and a C++ class that give the same answers.
 TEST(OutsidePlans, are_certified_stage_by_stage_and_leave_traces_and_pages) {
   const testing::TemporaryFolder folder;
   std::vector<Trace> traces;
@@ -119,7 +118,7 @@ TEST(OutsidePlans, are_certified_stage_by_stage_and_leave_traces_and_pages) {
       testing::expect_same_step(read.steps[k], step);
       EXPECT_EQ(step.certificates.size(), 5U);
       EXPECT_EQ(step.plan_states.col(0), step.belief_mean);
-      // The plan's first stage at what is observed.
+      // The plan's first stage at the observed state.
       const double input =
           0.1 + Eigen::RowVector3d(0.0, -0.5, -1.0).dot(step.observation - step.belief_mean);
       EXPECT_NEAR(step.input[0], input, 1e-15);

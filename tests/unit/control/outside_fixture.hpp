@@ -28,7 +28,7 @@ inline std::vector<std::string> controller_overrides(OutsideKind kind) {
           "controller.library=" + library_file(kind == OutsideKind::kLibrary ? "library" : "own")};
 }
 
-/// A drive of six periods; `more` is put after the overrides of the kind.
+/// A drive of six periods; `more` follows the overrides of the kind.
 inline Scenario outside_scenario(OutsideKind kind, const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = {
       "controller.horizon=5", "controller.quantisation={state: 20, noise: 20, compressed: 20}",
@@ -38,9 +38,9 @@ inline Scenario outside_scenario(OutsideKind kind, const std::vector<std::string
   return load_scenario("dubins_obstacles", overrides);
 }
 
-/// One that does not do what it should in period 2.
+/// A scenario whose controller misbehaves in period 2.
 inline Scenario failing_scenario(OutsideKind kind, const std::string& mode) {
-  // The answers before it take far less, even on a busy machine.
+  // The answers before it take far less time than the deadline, even on a busy machine.
   return outside_scenario(kind, {"controller.options.mode=" + mode, "controller.deadline=3"});
 }
 

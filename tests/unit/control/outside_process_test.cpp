@@ -1,5 +1,4 @@
-// The processes of controllers outside of the program: how they begin, how they are ended, and what
-// is heard of them.
+// The processes of external controllers: start, termination and output.
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -57,7 +56,7 @@ TEST(OutsideProcess, answers_that_nothing_had_asked_for_end_the_drive) {
   const Trace twice = failed("twice");
   EXPECT_THAT(twice.fault, HasSubstr("an answer that nothing had asked for"));
   EXPECT_EQ(twice.steps.size(), 3U);
-  // Before the first period, if it has come by then, or else instead of the answer to a later one.
+  // Reported before the first period if it has arrived by then, else instead of a later answer.
   const Trace early = failed("early");
   EXPECT_EQ(early.outcome, Outcome::kFault);
   EXPECT_LE(early.steps.size(), 2U);
@@ -111,7 +110,7 @@ TEST(OutsideProcess, has_its_standard_error_in_the_log_and_its_last_line_in_the_
               HasSubstr("what a library prints is in the log\n"));
 }
 
-/// The numbers that a responder with the option `pids` has written down.
+/// The process ids written by a responder with the option `pids`.
 std::vector<pid_t> written_pids(const std::string& path) {
   std::ifstream file(path);
   return {std::istream_iterator<pid_t>(file), {}};
@@ -135,7 +134,7 @@ TEST(OutsideProcess, ends_with_all_of_its_children_however_the_drive_ends) {
 
 TEST(OutsideProcess, has_no_descriptor_of_the_programs_but_its_own_three) {
   const testing::TemporaryFolder folder;
-  const int inherited = ::open("/dev/null", O_RDONLY);  // as by libraries that mind nothing
+  const int inherited = ::open("/dev/null", O_RDONLY);  // without O_CLOEXEC, as some libraries do
   (void)failed("good", {"controller.options.descriptors=" + (folder / "list")});
   ::close(inherited);
   std::ifstream file(folder / "list");

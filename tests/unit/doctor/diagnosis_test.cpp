@@ -1,4 +1,4 @@
-// How a plant's answers are judged, and that the shipped plants' are right.
+// How a plant's answers are diagnosed; those of the shipped plants are correct.
 #include "harness/doctor/diagnosis.hpp"
 
 #include <cmath>
@@ -57,7 +57,7 @@ TEST(Diagnosis, an_input_of_the_wrong_sign_is_told_although_the_noise_is_large) 
                              HasSubstr("the wrong sign"))));
 }
 
-// 0.055 m a period short of the model's 0.3 m: the size is nearly right, the noise 0.01 m.
+// 0.055 m per period short of the model's 0.3 m: of nearly the right size, with noise of 0.01 m.
 TEST(Diagnosis, a_mismatch_of_several_deviations_of_the_noise_is_told) {
   const std::vector<std::string> cases{"disturbance.covariance=[0.0001, 0.0001]",
                                        "disturbance.covariance=[0.0025, 0.0025]"};
@@ -97,7 +97,7 @@ TEST(Diagnosis, gains_are_found_that_make_the_plant_answer_as_the_model) {
   const Scenario wrong = robot(1.25, -22.5);
   const GainSearch search = search_gains(wrong, plant_answers(wrong));
   EXPECT_TRUE(search.changed);
-  // By design; wheels slip a little.
+  // The design value; wheels slip slightly.
   EXPECT_NEAR(search.mapping.holds.front().constant.gain, 12.5, 0.125);
   EXPECT_NEAR(search.mapping.inputs.at("yaw_rate").back().gain, 2.25, 0.0225);
   EXPECT_THAT(answer_warnings(wrong, search.answers), IsEmpty());

@@ -1,4 +1,4 @@
-// What happens between the control instants: recorded, and told apart from the outcome.
+// Events between control instants: recorded, and distinguished from the outcome.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace between_instants_test {
 
-/// A car drives straight on at 0.15 m a period, without noise, past `obstacle`.
+/// A car drives straight on at 0.15 m per period, without noise, past `obstacle`.
 Scenario straight_on(const std::string& obstacle, const std::vector<std::string>& more = {}) {
   return parse_scenario(
       "name: straight\nmodel: {system: dubins, speed: 1.5}\nplant: {kind: mujoco, mjcf: "

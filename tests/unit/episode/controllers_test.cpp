@@ -1,4 +1,4 @@
-// Episodes of every controller and estimator: what they leave in the trace, and what is made of it.
+// Episodes with every controller and estimator: their traces, and what is derived from them.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -29,7 +29,7 @@ Scenario scenario_of(const std::vector<std::string>& more) {
   return load_scenario("dubins_obstacles", overrides);
 }
 
-/// Every controller, and "lqr" about the target, which plans nothing.
+/// Every controller; additionally "lqr" about the target, which does not plan.
 std::vector<std::vector<std::string>> choices() {
   std::vector<std::vector<std::string>> all;
   for (const controller::ControllerEntry& entry : controller::controllers()) {
@@ -103,13 +103,13 @@ TEST(EpisodeControllers, of_every_kind_drive_with_every_estimator_that_fits) {
   }
 }
 
-/// What a controller with particles believes is what the certificates call the unsafe mass of the
-/// next stage; others may have an estimate of their own, and "lqr" has none.
+/// The estimate `believed` of a controller with particles is the certificates' unsafe mass of the
+/// next stage; others may have their own estimate, and "lqr" has none.
 TEST(EpisodeControllers, that_plan_with_particles_believe_in_their_weight) {
   double most = 0.0;
   for (const std::vector<std::string>& choice : choices()) {
     SCOPED_TRACE(choice.back());
-    // A wall through the start: some of the belief is unsafe at once.
+    // A wall through the start: part of the belief is unsafe from the beginning.
     std::vector<std::string> more = choice;
     more.insert(more.end(), {"safe_set.bounds={x: [-1, 12], y: [-0.05, 12]}", "risk={}",
                              "limit.stop_when_unsafe=false"});
@@ -124,7 +124,7 @@ TEST(EpisodeControllers, that_plan_with_particles_believe_in_their_weight) {
         EXPECT_FALSE(step.believed < 0.0 || step.believed > 1.0);
         continue;
       }
-      // 1e-12: sums of weights in another order.
+      // 1e-12: sums of weights in a different order.
       EXPECT_NEAR(step.believed, step.certificates.front().of("unsafe_mass"), 1e-12);
       most = std::max(most, step.believed);
     }
@@ -132,8 +132,8 @@ TEST(EpisodeControllers, that_plan_with_particles_believe_in_their_weight) {
   EXPECT_GT(most, 0.0);
 }
 
-/// Without a plan the certificate is from the state as it is known, and has no error of the period
-/// before in it.
+/// Without a plan the certificate starts from the observed state and does not include the error of
+/// the previous period.
 TEST(EpisodeControllers, without_a_plan_are_certified_from_the_observed_state) {
   const Trace trace = run_episode(scenario_of({"controller.kind=lqr", "controller.lqr.about=target",
                                                "model_error={rms: [0.03, 0.04, 0.01]}"}),

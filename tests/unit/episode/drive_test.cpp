@@ -111,7 +111,7 @@ TEST(ObjectController, has_its_plans_certified_at_every_stage) {
   EXPECT_EQ(trace.steps.front().input[0], 0.2);
 }
 
-/// The fault of a drive by `act`.
+/// The trace of a drive that fails because of `act`.
 Trace faulty(const Scenario& scenario,
              std::function<ControllerAnswer(const controller::Situation&)> act) {
   ControllerObject object{.name = "faulty", .act = std::move(act)};

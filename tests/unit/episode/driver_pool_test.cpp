@@ -21,7 +21,7 @@ Scenario short_scenario(const std::string& choice, const std::string& name = "du
        "limit.steps=8", "plant.kind=analytic", "vehicle.footprint=point", choice});
 }
 
-/// What an episode did, to the last bit.
+/// All numbers of an episode, to the last bit.
 std::vector<double> numbers_of(const Trace& trace) {
   std::vector<double> numbers;
   const auto add = [&numbers](const auto& values) {
@@ -79,7 +79,7 @@ TEST(DriverPool, gives_every_thread_and_scenario_its_own_episodes) {
       short_scenario("controller.policy=open_loop"),
       short_scenario("controller.policy=closed_loop", "dubins_corridor")};
   constexpr std::uint64_t kSeeds = 4;
-  // With room for none, for fewer than there are scenarios, and for all.
+  // With room for none, for some, and for all of the scenarios.
   for (const std::size_t limit : {0, 2, 12}) {
     DriverPool pool(limit);
     std::vector<std::vector<double>> found(scenarios.size() * kSeeds);

@@ -1,4 +1,4 @@
-// What the simulator's faults leave of an episode.
+// What simulator faults leave of an episode.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -13,7 +13,7 @@
 namespace qsmpc::harness {
 namespace episode_faults_test {
 
-/// A short drive in MuJoCo with something wrong in it.
+/// A short drive in MuJoCo with a defect.
 Scenario broken_scenario(const std::vector<std::string>& wrong) {
   std::vector<std::string> overrides = {
       "controller.horizon=5", "controller.quantisation={state: 20, noise: 20, compressed: 20}",

@@ -1,4 +1,4 @@
-// What becomes of a drive whose true state is unsafe, where it stops there and where it goes on.
+// Outcomes of drives whose true state is unsafe, whether they stop there or continue.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -13,7 +13,7 @@
 namespace qsmpc::harness {
 namespace episode_outcome_test {
 
-/// Without a penalty the way to the target leads through what is unsafe, here `safe_set`.
+/// Without a penalty, the path to the target leads through the unsafe set, given by `safe_set`.
 Scenario blind_scenario(const std::string& safe_set, const std::string& more = "limit.steps=40") {
   return load_scenario(
       "dubins_obstacles",
@@ -26,7 +26,7 @@ Scenario blind_scenario(const std::string& safe_set, const std::string& more = "
 
 constexpr const char* kColumn =
     "{bounds: {x: [-1, 12], y: [-3, 3]}, obstacles: [{x: [0.6, 1.5], y: [-2, 2]}]}";
-/// Too near for the turn that its first heading asks for.
+/// Too close for the turn that the initial heading requires.
 constexpr const char* kWall = "{bounds: {x: [-1, 12], y: [-3, 0.3]}}";
 constexpr const char* kGoOn = "limit.stop_when_unsafe=false";
 

@@ -18,7 +18,7 @@
 namespace qsmpc::harness {
 namespace episode_test {
 
-/// The shipped default, made small enough to run many times.
+/// The shipped default, reduced so that it can run many times.
 Scenario small_scenario(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = {
       "controller.horizon=5", "controller.quantisation={state: 20, noise: 20, compressed: 20}",
@@ -92,7 +92,7 @@ TEST(Episode, a_model_error_is_in_every_certificate_and_in_every_belief_that_was
   const double radius = Eigen::Vector3d(0.03, 0.04, 0.01).norm();
   for (std::size_t k = 0; k < of_plant.steps.size(); ++k) {
     const StepRecord& step = of_plant.steps[k];
-    // Without limits of the risk plans do not depend on it.
+    // Without risk limits, plans do not depend on the certificates.
     EXPECT_EQ(step.plan_inputs, of_model.steps[k].plan_inputs);
     EXPECT_EQ(step.budgets[0].model, k == 0 ? 0.0 : radius);
     EXPECT_GE(step.budgets[1].model, radius);
@@ -131,9 +131,9 @@ TEST(Episode, another_seed_gives_another_trace) {
   EXPECT_NE(first.steps[0].disturbance, second.steps[0].disturbance);
 }
 
-// The plan of a period is a function of the belief, and the belief one of what was seen before:
-// with only the plant's disturbances changed, everything is the same until the first disturbed
-// state has been seen, and differs from there on.
+// The plan of a period is a function of the belief, and the belief one of earlier observations:
+// with only the plant's disturbances changed, everything is equal until the first disturbed state
+// is observed, and differs from there on.
 TEST(Episode, the_planner_does_not_see_the_disturbances) {
   for (const char* kind : {"analytic", "mujoco"}) {
     const Scenario scenario = small_scenario({std::string("plant.kind=") + kind});
@@ -141,7 +141,7 @@ TEST(Episode, the_planner_does_not_see_the_disturbances) {
     const Trace second = run_episode(scenario, {.seed = 7, .plant_seed = 2});
     expect_equal_steps(first.steps[0], second.steps[0]);
     EXPECT_NE(first.steps[0].disturbance, second.steps[0].disturbance);
-    // Made before the state at step 1 is seen.
+    // Computed before the state at step 1 is observed.
     EXPECT_EQ(first.steps[1].plan_inputs, second.steps[1].plan_inputs);
     EXPECT_EQ(first.steps[1].belief_mean, second.steps[1].belief_mean);
     EXPECT_NE(first.steps[1].state, second.steps[1].state);
@@ -160,7 +160,7 @@ TEST(Episode, the_analytic_plant_moves_as_the_model_says) {
     models::StateBatch next(3, 1);
     model->step(state, input, next);
     EXPECT_EQ(trace.steps[k + 1].belief_mean, next.col(0));
-    // One addition apart: exact to rounding of numbers of order 1.
+    // One addition: exact up to rounding of numbers of order 1.
     EXPECT_TRUE(trace.steps[k + 1].state.isApprox(next.col(0) + step.disturbance, 1e-14));
   }
 }
@@ -176,7 +176,7 @@ TEST(Episode, leaves_a_whole_trace_with_what_the_model_does_not_explain) {
   ASSERT_EQ(trace.steps.size(), 3U);
   for (std::size_t k = 0; k < trace.steps.size(); ++k) {
     EXPECT_TRUE(testing::same_bits(trace.steps[k].residual, again.steps[k].residual));
-    EXPECT_FALSE(trace.steps[k].residual.isZero(1e-6));  // another plant than the model
+    EXPECT_FALSE(trace.steps[k].residual.isZero(1e-6));  // the plant is not the model
   }
 }
 
@@ -200,7 +200,7 @@ TEST(Episode, ends_at_the_target) {
   }
 }
 
-// A pole that stands upright after a whole turn.
+// A pole that is upright after a whole turn.
 TEST(Episode, a_target_angle_is_reached_whole_turns_away_where_it_is_meant_modulo_a_turn) {
   const std::string text =
       "name: pole\nmodel: {system: cart_pole}\nplant: {kind: analytic, mjcf: \"\"}\n"
@@ -253,7 +253,7 @@ TEST(Episode, leaving_the_noise_out_of_the_prediction_keeps_the_belief_only) {
   }
 }
 
-// Compression loses covariance at every step, matched moments do not.
+// Compression loses covariance at every step, moment matching does not.
 TEST(Episode, a_chosen_propagator_and_quantiser_are_what_it_is_predicted_with) {
   const auto plan_of = [](const std::string& propagator, const std::string& quantiser) {
     const Trace trace =
@@ -270,7 +270,7 @@ TEST(Episode, a_chosen_propagator_and_quantiser_are_what_it_is_predicted_with) {
   const StepRecord chosen = plan_of("moment_matched", "lloyd");
   EXPECT_LT(chosen.budgets[0].total, usual.budgets[0].total);
   EXPECT_GT(last_variance(chosen), 1.05 * last_variance(usual));
-  // Each key on its own, too.
+  // Each key by itself as well.
   EXPECT_EQ(plan_of("compressed", "lloyd").budgets[0].total, chosen.budgets[0].total);
   EXPECT_GT(last_variance(plan_of("moment_matched", "product")), 1.05 * last_variance(usual));
 }
@@ -320,7 +320,7 @@ TEST(Episode, every_solver_and_bounding_drives_within_the_bounds) {
   }
 }
 
-// What is planned before the loop, so that its first periods are not slow, must not be seen in it.
+// Planning before the loop, which keeps its first periods fast, must not affect its results.
 TEST(Episode, the_first_plan_is_that_of_a_planner_that_has_not_planned_before) {
   const Scenario scenario = small_scenario();
   const Trace trace = run_episode(scenario, {.seed = 3});
@@ -334,7 +334,7 @@ TEST(Episode, the_first_plan_is_that_of_a_planner_that_has_not_planned_before) {
   EXPECT_EQ(trace.steps[0].cost.total(), plan.cost.total());
 }
 
-// Loops over more than 1024 particles are divided.
+// Loops over more than 1024 particles are split.
 TEST(Episode, the_number_of_threads_changes_nothing) {
   const auto drive = [](int threads) {
     return run_episode(
@@ -369,7 +369,7 @@ TEST(Episode, drives_on_when_no_plan_is_done_in_time) {
   EXPECT_EQ(EpisodeView(in_time).summary().deadline_stops, 0);
 }
 
-// A trace is what reports and videos are made from: every stage must be there, and consistent.
+// Reports and videos are made from the trace, so every stage must be present and consistent.
 TEST(Episode, records_every_stage) {
   const Trace trace = run_episode(small_scenario(), {.seed = 5});
   for (const StepRecord& step : trace.steps) {

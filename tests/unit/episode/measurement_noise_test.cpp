@@ -1,4 +1,4 @@
-// Episodes whose planner sees the state with noise.
+// Episodes whose planner observes the state with noise.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace measurement_noise_test {
 
-/// A car in the plane that turns about a target for as long as the episode is, planned coarsely.
+/// A car in the plane that circles a target throughout the episode, with coarse planning.
 Scenario driving_about(const std::string& sensor, const std::vector<std::string>& more = {}) {
   const std::string text =
       "name: noisy\nmodel: {system: dubins, speed: 1.5}\nplant: {kind: analytic, mjcf: \"\"}\n"
@@ -36,7 +36,7 @@ TEST(MeasurementNoise, has_the_covariance_asked_for_and_depends_on_nothing_else)
   const Scenario scenario = driving_about(correlated, {"limit.steps=400"});
   const Trace trace = run_episode(scenario, {.seed = 5});
   ASSERT_EQ(trace.steps.size(), 400U);
-  // Whitened, the errors have the covariance I, and none with the errors before or disturbances.
+  // Whitened, the errors have covariance I and no correlation with earlier errors or disturbances.
   const Eigen::LLT<Eigen::Matrix3d> root(scenario.disturbance.sensor);
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d with_last = Eigen::Matrix3d::Zero();
@@ -50,8 +50,8 @@ TEST(MeasurementNoise, has_the_covariance_asked_for_and_depends_on_nothing_else)
     with_disturbance += error * step.disturbance.cwiseQuotient(scale).transpose() / 400.0;
     last = error;
   }
-  // An entry deviates by √(1/n), on the diagonal by √(2/n); four times that happens to one seed in
-  // a thousand.
+  // An entry has standard deviation √(1/n), on the diagonal √(2/n); one seed in a thousand exceeds
+  // four times that.
   const double limit = 4.0 * std::sqrt(2.0 / 400.0);
   EXPECT_LE((squares - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), limit);
   EXPECT_LE(with_last.cwiseAbs().maxCoeff(), limit);
@@ -75,7 +75,7 @@ TEST(MeasurementNoise, does_not_come_from_the_seed_of_the_plant) {
   const Trace third = run_episode(driving_about(correlated), {.seed = 6, .plant_seed = 1});
   EXPECT_EQ(first.steps[0].observation, second.steps[0].observation);
   EXPECT_NE(first.steps[1].disturbance, second.steps[1].disturbance);
-  // One subtraction and one addition of numbers of order 1 apart.
+  // One subtraction and one addition of numbers of order 1.
   EXPECT_LE((error_of(first.steps[4]) - error_of(second.steps[4])).norm(), 1e-14);
   EXPECT_GT((error_of(first.steps[4]) - error_of(third.steps[4])).norm(), 1e-3);
 }
@@ -136,13 +136,13 @@ TEST(MeasurementNoise, does_not_move_the_plant) {
     const StepRecord& step = trace.steps[k];
     models::StateBatch next(3, 1);
     model->step(models::StateBatch(step.state), models::StateBatch(step.input), next);
-    // One addition apart: exact to rounding of numbers of order 1.
+    // One addition: exact up to rounding of numbers of order 1.
     EXPECT_TRUE(trace.steps[k + 1].state.isApprox(next.col(0) + step.disturbance, 1e-14));
   }
 }
 
 TEST(MeasurementNoise, does_not_decide_the_outcome) {
-  // So much noise that the target is seen within reach long before it is, and the wall broken.
+  // So much noise that the target seems reached, and the wall crossed, long before they are.
   const Scenario scenario = driving_about(
       "[1, 1, 0]", {"target={state: [3, 0, 0], radius: 0.5}", "safe_set.bounds.y=[-1.5, 1.5]"});
   const auto distance = [&](const Eigen::VectorXd& state) {

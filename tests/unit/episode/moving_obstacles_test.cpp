@@ -1,5 +1,5 @@
-// Drives among obstacles that move: where these are, what is seen, known and recorded of them, and
-// what decides how a drive ends.
+// Drives among moving obstacles: their positions, observations, estimates and records, and what
+// decides how a drive ends.
 #include "harness/episode/moving_obstacles.hpp"
 
 #include <cmath>
@@ -77,7 +77,7 @@ TEST(MovingObstacles, of_a_seed_are_the_same_and_of_others_are_not) {
     EXPECT_EQ(first.steps[k].certificates[0].value, again.steps[k].certificates[0].value);
   }
   EXPECT_NE(first.steps[3].obstacles, other.steps[3].obstacles);
-  // Those that stand at the beginning, of other motions, are the plant's disturbances.
+  // Obstacles in the same initial positions but with different motions: the plant's disturbances.
   const Trace plant = driver.run({.seed = 1, .plant_seed = 9});
   EXPECT_EQ(first.steps[0].obstacles, plant.steps[0].obstacles);
   EXPECT_NE(first.steps[3].obstacles, plant.steps[3].obstacles);
@@ -101,8 +101,8 @@ TEST(MovingObstacles, go_each_of_their_ways_as_often_as_it_is_probable) {
   EXPECT_NEAR(turned, 0.5 * kDrives, 4.0 * std::sqrt(0.25 * kDrives));
 }
 
-// What the drive knows is exact, so that what was forecast differs from what comes as the forecast
-// says: the Mahalanobis distance is χ² of two degrees.
+// The drive knows the exact laws, so errors of the forecast follow the forecast: the squared
+// Mahalanobis distance is χ² with two degrees of freedom.
 TEST(MovingObstacles, come_where_they_were_forecast_as_often_as_it_was_said) {
   const Scenario scenario = scenario_with(kWalker);
   auto forecast = std::make_shared<controller::ObstacleForecast>(1);
@@ -151,7 +151,7 @@ TEST(MovingObstacles, wait_for_the_vehicle_where_they_yield) {
 }
 
 TEST(MovingObstacles, decide_how_a_drive_ends) {
-  // It comes towards the car faster than that could turn away.
+  // It approaches the car faster than the car can turn away.
   const Trace hit =
       run_episode(scenario_with("{disc: {centre: [4, 0], radius: 1}, motion: {velocity: [-8, 0]}}",
                                 {"initial_state.covariance=[0, 0, 0]"}),
@@ -161,7 +161,7 @@ TEST(MovingObstacles, decide_how_a_drive_ends) {
   const EpisodeView view(hit);
   EXPECT_LE(view.clearances()[view.clearances().size() - 1], 0.0);
   EXPECT_GT(view.clearances()[0], 0.5);
-  // One that stands there is driven round, as is one that goes away.
+  // A standing obstacle is driven around, as is one that moves away.
   const Trace gone =
       run_episode(scenario_with("{disc: {centre: [4, 0], radius: 1}, motion: {velocity: [8, 0]}}",
                                 {"initial_state.covariance=[0, 0, 0]"}),

@@ -1,4 +1,4 @@
-// Drives whose noise is drawn by other seeds from a period on.
+// Drives whose noise is drawn with other seeds from a certain period on.
 #include <string>
 #include <vector>
 
@@ -55,7 +55,7 @@ TEST(NoiseSeedsOfADrive, draw_what_a_drive_of_that_seed_draws) {
   ASSERT_GT(other.steps.size(), 5U);
   for (std::size_t k = 3; k < 6; ++k) {
     EXPECT_EQ(of_seed.steps[k].disturbance, other.steps[k].disturbance);
-    // The noise of an observation is one of two sums of other numbers: up to rounding.
+    // The difference recovers the observation noise from sums of different numbers: up to rounding.
     EXPECT_TRUE((of_seed.steps[k].observation - of_seed.steps[k].state)
                     .isApprox(other.steps[k].observation - other.steps[k].state, 1e-9));
   }

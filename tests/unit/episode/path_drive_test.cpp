@@ -1,4 +1,4 @@
-// Drives along paths: laps, the end of an open path, edges, and a track of another's.
+// Drives along paths: laps, the end of an open path, edges, and a third-party track.
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace path_drive_test {
 
-/// A Dubins car of 1 m/s with little noise that follows `target`.
+/// A Dubins car at 1 m/s with little noise that follows `target`.
 Scenario car_along(const std::string& target, const std::vector<std::string>& overrides = {}) {
   return parse_scenario(
       "name: path\nmodel: {system: dubins_rk4, speed: 1}\n"
@@ -30,7 +30,7 @@ Scenario car_along(const std::string& target, const std::vector<std::string>& ov
       {.file = "t.yaml", .overrides = overrides});
 }
 
-/// A circle of this radius to the left of the origin, with the widths.
+/// A circle of this radius to the left of the origin, with these widths.
 std::string circle(double radius, const std::string& widths) {
   std::string rows;
   for (int i = 0; i < 24; ++i) {
@@ -51,7 +51,7 @@ TEST(PathDrive, ends_after_its_laps_and_times_them) {
   EXPECT_EQ(summary.laps->wanted, 2);
   ASSERT_EQ(summary.laps->times.size(), 2U);
   const double length = scenario.target.course->path->length();
-  // At 1 m/s, less what is cut off or driven too much: two centimetres off the middle of 2 m.
+  // At 1 m/s, with cut corners and detours: two centimetres off a radius of 2 m.
   for (const double time : summary.laps->times) EXPECT_NEAR(time, length, 0.05 * length);
   EXPECT_NEAR(*summary.distance, 2.0 * length, 0.2);
   ASSERT_TRUE(summary.time_to_target.has_value());
@@ -59,7 +59,7 @@ TEST(PathDrive, ends_after_its_laps_and_times_them) {
 }
 
 TEST(PathDrive, ends_at_the_end_of_an_open_path_also_where_it_crosses_itself) {
-  // The loop of a knot: the end is near the beginning, and across it.
+  // A loop as in a knot: the end is close to the beginning and crosses it.
   const Scenario scenario = car_along(
       "{path: [[0, 0], [2, 0], [4, 0], [5.5, 1.5], [4, 3], [2.5, 1.5], [2.5, 0], [2.5, -2]], "
       "radius: 0.3}");
@@ -74,7 +74,7 @@ TEST(PathDrive, ends_at_the_end_of_an_open_path_also_where_it_crosses_itself) {
 }
 
 TEST(PathDrive, that_touches_an_edge_has_left_bounds) {
-  // A bend that is tighter than the car can turn.
+  // A bend tighter than the car can turn.
   const Scenario scenario = car_along(
       "{path: [[0, 0, 0.3, 0.3], [2, 0, 0.3, 0.3], [2.6, 0.6, 0.3, 0.3], [2.6, 3, 0.3, 0.3]]}",
       {"controller.input_bounds={yaw_rate: [-0.2, 0.2]}"});
@@ -96,7 +96,7 @@ TEST(PathDrive, every_controller_of_ours_follows) {
 }
 
 TEST(PathDrive, a_track_of_a_thousand_points_is_driven_as_it_is) {
-  // A circuit of 3 km in the format of public collections; a car of 30 m/s sees 2.4 s ahead.
+  // A circuit of 3 km in the format of public collections; a car at 30 m/s looks 2.4 s ahead.
   testing::TemporaryFolder folder;
   std::string track = "# x_m,y_m,w_tr_right_m,w_tr_left_m\n";
   for (int i = 0; i < 1000; ++i) {

@@ -12,7 +12,7 @@
 namespace qsmpc::harness {
 namespace waypoint_drive_test {
 
-/// A Dubins car of 1 m/s with little noise, twice through the same place.
+/// A Dubins car at 1 m/s with little noise, twice through the same place.
 Scenario car_over(const std::string& waypoints, const std::vector<std::string>& overrides = {}) {
   return parse_scenario(
       "name: waypoints\nmodel: {system: dubins_rk4, speed: 1}\n"
@@ -41,7 +41,7 @@ TEST(WaypointDrive, passes_them_in_order_and_ends_at_the_last) {
   ASSERT_EQ(passed->times.size(), 5U);
   EXPECT_TRUE(std::ranges::is_sorted(passed->times));
   EXPECT_EQ(passed->times.back(), view.summary().time_to_target);
-  // At these times it was there, whatever the count says.
+  // It was there at these times, independently of the count.
   const Eigen::MatrixXd states = true_states(trace);
   for (std::size_t n = 0; n < passed->times.size(); ++n) {
     const auto k = static_cast<Eigen::Index>(std::lround(passed->times[n] / scenario.time_step));
@@ -49,7 +49,7 @@ TEST(WaypointDrive, passes_them_in_order_and_ends_at_the_last) {
     const Eigen::VectorXd off = states.col(k) - scenario.target.route->states.col(i);
     EXPECT_LE(off.head<2>().norm(), 0.4) << n;
   }
-  // The last is where the first is, which does not end the drive.
+  // The last waypoint equals the first, which does not end the drive early.
   EXPECT_GT(passed->times.back(), passed->times.front() + 5.0);
   const Trace again = run_episode(scenario, {.seed = 1});
   EXPECT_EQ(true_states(again), states);

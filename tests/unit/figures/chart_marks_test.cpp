@@ -39,7 +39,7 @@ TEST(ChartMarks, lie_along_the_lines_where_there_are_several) {
   EXPECT_EQ(testing::occurrences(svg, "class=\"line c2\""), 2);
   EXPECT_EQ(testing::occurrences(svg, "class=\"line c5"), 1) << "dashes tell it apart";
   EXPECT_TRUE(testing::contains(svg, mark_data(kOrange, 78.0, 244.0))) << "at the first point";
-  // The legend shows them, too.
+  // The legend shows them as well.
   const std::string sign = mark_data(kGreen, kSwatchWidth / 2.0, kSwatchHeight / 2.0);
   EXPECT_TRUE(testing::contains(chart_legend(chart)[1].drawing, sign));
   EXPECT_FALSE(testing::contains(chart_legend(chart)[2].drawing, "c5\" d"));

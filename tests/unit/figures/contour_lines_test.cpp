@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 
-/// Values about a centre, on 21 x 31 nodes.
+/// Values around a centre, on 21 x 31 nodes.
 MatrixXd values_of(double (*function)(double, double)) {
   return MatrixXd::NullaryExpr(21, 31, [&](Index i, Index j) {
     return function(static_cast<double>(i) - 10.0, static_cast<double>(j) - 15.0);
@@ -20,7 +20,7 @@ MatrixXd values_of(double (*function)(double, double)) {
 }
 
 TEST(ContourLines, of_a_plane_hill_lie_where_the_level_is) {
-  // Linear along every edge, so that the interpolation is exact.
+  // Linear along every edge, so the interpolation is exact.
   const auto lines =
       contour_lines(values_of([](double x, double y) { return -std::abs(x) - std::abs(y); }), -6.4);
   ASSERT_EQ(lines.size(), 1U);
@@ -40,7 +40,7 @@ TEST(ContourLines, go_round_a_hole_too) {
 TEST(ContourLines, at_a_saddle_the_mean_of_the_corners_decides) {
   MatrixXd values = MatrixXd::Zero(4, 4);
   values(1, 1) = values(2, 2) = 1.0;
-  EXPECT_EQ(contour_lines(values, 0.6).size(), 2U);  // the mean, 0.5, is below
+  EXPECT_EQ(contour_lines(values, 0.6).size(), 2U);  // the saddle's mean, 0.5, is below
   EXPECT_EQ(contour_lines(values, 0.4).size(), 1U);
   const MatrixXd mirrored = values.rowwise().reverse();
   EXPECT_EQ(contour_lines(mirrored, 0.6).size(), 2U);

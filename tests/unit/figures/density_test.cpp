@@ -25,7 +25,7 @@ VectorXd vector_of(std::initializer_list<double> values) {
   return Eigen::Map<const VectorXd>(values.begin(), std::ssize(values));
 }
 
-/// A banana: not a Gaussian, correlated, and with coordinates of unlike scales.
+/// A banana shape: non-Gaussian, correlated, with coordinates of different scales.
 Matrix2Xd example_points(Index count, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   Matrix2Xd points(2, count);
@@ -41,7 +41,7 @@ VectorXd example_weights(Index count, std::mt19937_64& random) {
   return VectorXd::NullaryExpr(count, [&] { return uniform(random); });
 }
 
-/// Scott's kernel of a weighted sample, written down plainly.
+/// Scott's kernel of a weighted sample, in its plainest form.
 struct PlainKernel {
   PlainKernel(const MatrixXd& points, const VectorXd& weights)
       : sample(points), share(weights / weights.sum()) {
@@ -76,7 +76,7 @@ Vector2d node(const DensityGrid& grid, Index i, Index j) {
   return grid.centre + grid.basis * Vector2d(grid.u[i], grid.v[j]);
 }
 
-/// Whether `point` is within an odd number of the lines.
+/// Whether an odd number of the lines encloses `point`.
 bool is_enclosed(const std::vector<DensityContour>& contours, const Vector2d& point) {
   bool enclosed = false;
   for (const DensityContour& contour : contours) {
@@ -156,7 +156,7 @@ TEST(DensityGrid, is_the_sum_of_weighted_kernels) {
 TEST(DensityGrid, integrates_to_one) {
   std::mt19937_64 random(9);
   const DensityGrid grid = density_grid(example_points(300, random), kEqual);
-  EXPECT_NEAR(grid.density.sum() * grid.cell_area(), 1.0, 1e-4);  // what lies beyond
+  EXPECT_NEAR(grid.density.sum() * grid.cell_area(), 1.0, 1e-4);  // minus what lies beyond
 }
 
 TEST(DensityGrid, points_on_a_line_or_in_one_place_have_a_density) {
@@ -170,14 +170,14 @@ TEST(DensityGrid, points_on_a_line_or_in_one_place_have_a_density) {
     EXPECT_NEAR(grid.density.sum() * grid.cell_area(), 1.0, 1e-3);
     const auto contours = density_contours(grid, {0.9});
     ASSERT_EQ(contours.size(), 1U);
-    // Within the points' box and a kernel about it.
+    // Within the points' bounding box plus a kernel around it.
     EXPECT_LT((contours[0].points.col(0) - points.rowwise().mean()).norm(),
               1.5 * (points.colwise() - points.rowwise().mean()).norm() + 1e-6);
   }
 }
 
 TEST(DensityContours, of_one_kernel_are_its_confidence_ellipses) {
-  // Points of a Gaussian's shape so small that the kernel is the density: two pairs about 0.
+  // So few points that a single kernel dominates the density: two pairs about 0.
   Matrix2Xd points(2, 4);
   points << -1, 1, 0, 0, 0, 0, -1, 1;
   const PlainKernel plain(points, VectorXd::Ones(4));
@@ -185,7 +185,8 @@ TEST(DensityContours, of_one_kernel_are_its_confidence_ellipses) {
   for (const DensityContour& contour : density_contours(grid, {0.25, 0.5, 0.95})) {
     const double level = plain.density(contour.points.col(0));
     for (Index n = 0; n < contour.points.cols(); ++n) {
-      // Linear interpolation over a cell of 1/40 deviation errs by (1/40)²/8 of the curvature.
+      // The error of linear interpolation over a cell of 1/40 deviation is (1/40)²/8 of the
+      // curvature.
       EXPECT_NEAR(plain.density(contour.points.col(n)), level, 2e-3 * level);
     }
   }

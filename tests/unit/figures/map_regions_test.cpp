@@ -1,4 +1,4 @@
-// Obstacles of any outline on a map: polygons and half-planes, cut to what is shown.
+// Obstacles of any outline on a map: polygons and half-planes, clipped to the visible area.
 #include "harness/figures/map_regions.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace map_regions_test {
 using testing::contains;
 using testing::occurrences;
 
-/// 10 m x 10 m, so that a metre is 48 units: the map itself is 480 units wide.
+/// 10 m x 10 m, so that a metre is 48 units: the map is 480 units wide.
 constexpr double kUnits = 48.0;
 constexpr MapRectangle kSquare{.x_lower = 0, .x_upper = 10, .y_lower = 0, .y_upper = 10};
 
@@ -54,7 +54,7 @@ std::vector<MapPoint> disc(double x, double y, double radius) {
   return corners;
 }
 
-/// The corners of the only path of class obstacle, in metres.
+/// The corners of the only path with class "obstacle", in metres.
 std::vector<MapPoint> drawn_obstacle(const std::string& svg) {
   std::smatch match;
   EXPECT_EQ(occurrences(svg, "<path class=\"obstacle\""), 1);
@@ -73,7 +73,7 @@ std::vector<MapPoint> drawn_obstacle(const std::string& svg) {
 
 TEST(MapRegions, a_polygon_is_cut_to_an_area_whether_it_is_convex_or_not) {
   EXPECT_NEAR(area_of(clipped(kCorner, kSquare)), 12.0, 1e-12);
-  // Across both arms: 2 x 1 of one, 1 x 2 of the other one, and what they have in common.
+  // Across both arms: 2 x 1 of one, 1 x 2 of the other, and their intersection.
   const std::vector<MapPoint> part =
       clipped(kCorner, {.x_lower = 2, .x_upper = 4, .y_lower = 2, .y_upper = 4});
   EXPECT_NEAR(area_of(part), 3.0, 1e-12);
@@ -117,7 +117,7 @@ TEST(MapFigure, a_moving_obstacle_is_a_way_and_outlines_and_has_no_part_in_the_a
   EXPECT_EQ(occurrences(svg, "class=\"outline thin c0\""), 2);
   EXPECT_EQ(occurrences(svg, "class=\"outline thin broken c0\""), 1);
   EXPECT_EQ(occurrences(svg, "class=\"mover c0\""), 1);
-  // In the legend each once.
+  // Each once in the legend.
   EXPECT_EQ(occurrences(html, "moving obstacle at the start</li>"), 1);
   EXPECT_EQ(occurrences(html, "moving obstacle when the vehicle was nearest to it</li>"), 1);
   EXPECT_TRUE(contains(svg_figure({map}), ".mover{fill"));

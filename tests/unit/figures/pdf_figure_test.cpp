@@ -27,7 +27,7 @@ Chart example() {
                      {.name = "model", .colour = 1, .x = {1, 2, 3}, .y = {0.1, 0.2, 0.1}}}};
 }
 
-/// What a program of poppler says of the file.
+/// The output of a poppler program about the file.
 std::string output_of(const std::string& command) {
   std::string output;
   FILE* pipe = ::popen(command.c_str(), "r");

@@ -22,7 +22,7 @@ using testing::tag_problem;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// 10 m x 10 m, so that a metre is 48 units: the map itself is 480 units wide.
+/// 10 m x 10 m, so that a metre is 48 units: the map is 480 units wide.
 constexpr double kUnits = 48.0;
 constexpr MapRectangle kSquare{.x_lower = 0, .x_upper = 10, .y_lower = 0, .y_upper = 10};
 
@@ -55,7 +55,7 @@ PlaneMap full_map() {
   return map;
 }
 
-/// The first numbers of `pattern`'s groups in `text`.
+/// The numbers in the groups of the first match of `pattern` in `text`.
 std::vector<double> numbers_of(const std::string& text, const std::string& pattern) {
   std::smatch match;
   if (!std::regex_search(text, match, std::regex(pattern))) return {};
@@ -93,7 +93,7 @@ TEST(MapFigure, axes_are_equal_and_points_are_where_they_belong) {
 }
 
 TEST(MapFigure, a_confidence_ellipse_has_its_axes) {
-  // Standard deviations 2 along (3, 4)/5 and 0.5 across; p = 1 − e^(−1/2) is one of them away.
+  // Standard deviations 2 along (3, 4)/5 and 0.5 across; p = 1 − e^(−1/2) is one deviation away.
   const Eigen::Matrix2d turn = (Eigen::Matrix2d() << 0.6, -0.8, 0.8, 0.6).finished();
   PlaneMap map = square_map();
   map.ellipses = {{.mean = {5, 5},
@@ -101,9 +101,9 @@ TEST(MapFigure, a_confidence_ellipse_has_its_axes) {
                    .levels = {1.0 - std::exp(-0.5)}}};
   const std::vector<double> data = numbers_of(map_drawing(map), kEllipse);
   ASSERT_EQ(data.size(), 7U);
-  EXPECT_NEAR(data[2], 2.0 * kUnits, 0.01);  // as printed, and below
+  EXPECT_NEAR(data[2], 2.0 * kUnits, 0.01);  // printed digits, also below
   EXPECT_NEAR(data[3], 0.5 * kUnits, 0.01);
-  // From one end of the longer axis to the other, whichever comes first.
+  // From one end of the longer axis to the other, in either direction.
   EXPECT_NEAR(std::abs(data[5] - data[0]), 2.0 * 1.2 * kUnits, 0.11);
   EXPECT_NEAR(std::abs(data[6] - data[1]), 2.0 * 1.6 * kUnits, 0.11);
   EXPECT_LT((data[5] - data[0]) * (data[6] - data[1]), 0.0);  // up to the right, y points down
@@ -115,7 +115,7 @@ TEST(MapFigure, an_ellipse_holds_its_part_of_the_normal_distribution) {
   map.ellipses = {{.mean = {5, 5}, .covariance = Eigen::Matrix2d::Identity(), .levels = {0.95}}};
   const std::vector<double> data = numbers_of(map_drawing(map), kEllipse);
   ASSERT_EQ(data.size(), 7U);
-  EXPECT_NEAR(data[2] / kUnits, std::sqrt(5.991465), 1e-3);  // χ²(2) at 95 %; as printed
+  EXPECT_NEAR(data[2] / kUnits, std::sqrt(5.991465), 1e-3);  // χ²(2) at 95 %; printed digits
 }
 
 TEST(MapFigure, singular_covariances_are_lines_and_dots) {
@@ -138,7 +138,7 @@ TEST(MapFigure, the_area_of_a_dot_is_in_proportion_to_its_weight) {
   const double large =
       numbers_of(svg, "stroke-width=\"" + kNumber + "\" d=\"M48.0 432.0h0\"").at(0);
   const double small = numbers_of(svg, "stroke-width=\"" + kNumber + "\" d=\"M240.0").at(0);
-  EXPECT_NEAR(large / small, 2.0, 0.1);  // of the diameters, in steps
+  EXPECT_NEAR(large / small, 2.0, 0.1);  // of the diameters, which come in steps
 }
 
 TEST(MapFigure, one_heavy_dot_does_not_hide_the_map) {
@@ -152,7 +152,7 @@ TEST(MapFigure, a_large_cloud_is_thinned_by_weight_and_says_so) {
   constexpr Index kPoints = 100000;
   PlaneMap map = square_map();
   MapCloud cloud{.points = Matrix2Xd(2, kPoints), .weights = Eigen::VectorXd(kPoints)};
-  // Three quarters of the weight are on the left, spread over one tenth of the points.
+  // Three quarters of the weight are on the left, on one tenth of the points.
   for (Index i = 0; i < kPoints; ++i) {
     const bool left = i % 10 == 0;
     cloud.points.col(i) << (left ? 1.0 : 9.0), 1e-4 * static_cast<double>(i);
@@ -166,7 +166,7 @@ TEST(MapFigure, a_large_cloud_is_thinned_by_weight_and_says_so) {
   const int right = testing::occurrences(html, "M432.0 ");
   EXPECT_GT(left + right, 3000);
   EXPECT_NEAR(static_cast<double>(left) / (left + right), 0.75, 0.01);  // one pick in some hundred
-  EXPECT_EQ(testing::occurrences(html, "M240.0 240.0h0"), 1);  // a small cloud keeps its dots
+  EXPECT_EQ(testing::occurrences(html, "M240.0 240.0h0"), 1);  // a small cloud keeps all its dots
   EXPECT_EQ(map_figure(map), html);
 }
 
@@ -190,8 +190,8 @@ TEST(MapFigure, many_long_paths_stay_small) {
   map.paths.assign(40, path);
   const std::string html = map_figure(map);
   EXPECT_LT(html.size(), 200000U);
-  EXPECT_EQ(testing::occurrences(html, "L480.0 240.0\""), 40);  // every one is drawn to its end
-  EXPECT_EQ(testing::occurrences(html, "one of many"), 1);      // and stands once in the legend
+  EXPECT_EQ(testing::occurrences(html, "L480.0 240.0\""), 40);  // each of them is drawn completely
+  EXPECT_EQ(testing::occurrences(html, "one of many"), 1);      // and appears once in the legend
 }
 
 TEST(MapFigure, what_is_not_finite_is_left_out_and_said) {
@@ -286,7 +286,7 @@ struct Text {
   double y = 0.0;
 };
 
-/// Where the texts of the labels are.
+/// Positions of the labels' texts.
 std::vector<Text> label_places(const std::string& svg) {
   const std::regex pattern("class=\"time\" x=\"" + kNumber + "\" y=\"" + kNumber + "\"");
   std::vector<Text> places;
@@ -324,7 +324,7 @@ TEST(MapLabels, stay_within_the_map) {
 }
 
 TEST(MapLabels, of_an_ellipse_stand_outside_of_it) {
-  // A wide one, and one that leaves room at its sides only.
+  // A wide one, and one that only leaves room at its sides.
   for (const Vector2d& variance : {Vector2d(1.0, 0.1), Vector2d(1.0, 4.0)}) {
     PlaneMap map = square_map();
     map.ellipses = {{.mean = {5, 5},
@@ -334,7 +334,8 @@ TEST(MapLabels, of_an_ellipse_stand_outside_of_it) {
     const std::vector<Text> places = label_places(map_drawing(map));
     ASSERT_EQ(places.size(), 1U);
     const double radius = std::sqrt(-2.0 * std::log(0.05));
-    // The nearest corner of the text's box, 30 x 12 units large at least, to the middle.
+    // Distance from the middle to the nearest corner of the text's box, at least 30 x 12 units in
+    // size.
     const double x = std::max({places[0].x - 240.0, 0.0, 240.0 - places[0].x - 30.0});
     const double y = std::max({places[0].y - 10.0 - 240.0, 0.0, 240.0 - places[0].y - 2.0});
     EXPECT_GT((Vector2d(x, y) / kUnits).cwiseQuotient(variance.cwiseSqrt()).norm(), radius);

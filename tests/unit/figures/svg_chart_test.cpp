@@ -115,7 +115,7 @@ TEST(ChartFigure, a_gap_interrupts_the_line_and_is_said) {
   const std::string html = chart_figure(chart);
   EXPECT_FALSE(testing::contains(html, "nan"));
   EXPECT_TRUE(testing::contains(html, "1 value is not finite and not drawn"));
-  // The first point stands alone, as a dot; the last two are a line.
+  // The first point is isolated and drawn as a dot; the last two form a line.
   EXPECT_EQ(testing::occurrences(html, "<path class=\"points c0\" d=\"M78.0 "), 1);
   const std::size_t line = html.rfind("<path class=\"line c0\" d=\"M");
   const std::string data = html.substr(line, html.find('>', line) - line);
@@ -155,7 +155,7 @@ TEST(ChartFigure, a_long_line_is_thinned_but_keeps_its_extremes) {
   EXPECT_TRUE(testing::contains(html, " 10.0"));  // the peak reaches the top of the frame
 }
 
-/// Two points with bars both ways; one of them at 0.
+/// Two points with error bars in both directions; one of them at 0.
 Chart joined_chart() {
   return {.title = "Risk",
           .x_label = "rate",
@@ -175,7 +175,7 @@ Chart joined_chart() {
                       .labels = {"strict", "<b>lenient"}}}};
 }
 
-/// The data of the first path of the class.
+/// The data of the first path with this class.
 std::string path_of_class(const std::string& svg, const std::string& classes) {
   const std::string head = "<path class=\"" + classes + "\" d=\"";
   const std::size_t begin = svg.find(head);

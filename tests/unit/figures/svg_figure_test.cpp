@@ -162,7 +162,7 @@ TEST(SvgFigure, every_class_has_a_style_in_the_file_and_on_a_page) {
   EXPECT_GT(classes.size(), 20U);
   for (const std::string& name : classes) {
     const std::regex rule("\\." + name + "[ ,{.]");
-    if (name != "clip") {  // an <svg> within another one clips anyway
+    if (name != "clip") {  // an <svg> within another one clips by default
       EXPECT_TRUE(std::regex_search(style, rule)) << name;
     }
     if (name != "title") {  // a page has a <figcaption>

@@ -1,5 +1,5 @@
-// Files are there whole or not at all. The tests may run as root, for whom no folder is closed:
-// what fails is made to fail by kind (a file in place of a folder) or by a limit of files' sizes.
+// A file exists completely or not at all. The tests may run as root, for whom no folder is
+// read-only, so failures are caused by type (a file instead of a folder) or by a file size limit.
 #include "harness/files/atomic_file.hpp"
 
 #include <csignal>
@@ -79,8 +79,8 @@ TEST(PendingFile, says_which_path_cannot_be_written_and_why) {
               HasSubstr("No such file or directory"));
 }
 
-/// Files of this process take no more than `bytes` while it lives: as on a full disk, what is
-/// written beyond is refused.
+/// While alive, limits the files of this process to `bytes`: as on a full disk, writing beyond that
+/// fails.
 class SmallFiles {
  public:
   explicit SmallFiles(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -138,7 +138,8 @@ TEST(PendingFile, does_not_write_through_a_symbolic_link) {
   EXPECT_THAT(io_error_of([&] { write_file(folder / "a.txt", "new"); }),
               HasSubstr("a.txt.partial"));
   EXPECT_EQ(content_of(precious), "old");
-  // Only what stands beside it is refused: the file itself is replaced, not what it points to.
+  // Only a link in place of the temporary file is refused; a link in place of the file itself is
+  // replaced, and its target stays.
   std::filesystem::create_symlink(precious, folder / "b.txt");
   write_file(folder / "b.txt", "new");
   EXPECT_EQ(content_of(precious), "old");

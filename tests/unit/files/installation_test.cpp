@@ -17,7 +17,7 @@ TEST(Installation, finds_the_prefix_of_programs_and_libraries) {
               ElementsAre("/opt/q/lib", "/opt/q"));
 }
 
-// A wheel brings its files along, and they come before those of the prefix that Python itself has.
+// A wheel ships its files, and they take precedence over those in Python's own prefix.
 TEST(Installation, finds_the_prefix_of_the_python_module) {
   EXPECT_THAT(installation_prefixes_of("/usr/lib/python3/dist-packages/qsmpc/_native/core.so"),
               ElementsAre("/usr/lib/python3/dist-packages/qsmpc", "/usr/lib/python3/dist-packages",

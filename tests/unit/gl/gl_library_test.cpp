@@ -1,4 +1,4 @@
-// One OpenGL library a process: each drawing happens in a child, which is this program again.
+// One OpenGL library per process: each drawing happens in a child process that runs this program.
 #include "render/gl/gl_library.hpp"
 
 #include <array>
@@ -33,7 +33,8 @@ Frame example_frame() {
   return frame;
 }
 
-// Draws a picture with the library into a file; prints where the vehicle must be and what drew.
+// Draws a picture with the library into a file; prints the vehicle's expected place and the
+// renderer.
 void draw(const std::string& library, const std::string& path) {
   use_gl(library);
   World world = small_world();
@@ -47,7 +48,7 @@ void draw(const std::string& library, const std::string& path) {
   std::cout << vehicle.x << ' ' << vehicle.y << ' ' << gl_description() << '\n';
 }
 
-// Whether a library that draws is in this process.
+// Whether an OpenGL library is loaded in this process.
 bool is_mapped() {
   std::ifstream maps("/proc/self/maps");
   const std::string text{std::istreambuf_iterator<char>(maps), {}};
@@ -104,7 +105,7 @@ TEST(gl_library, egl_draws_what_osmesa_draws) {
   EXPECT_THAT(egl.description, StartsWith("egl: "));
   ASSERT_EQ(osmesa.image.rgb.size(), egl.image.rgb.size());
   ASSERT_FALSE(egl.image.rgb.empty());
-  // Another driver may round edges otherwise: one pixel in a thousand.
+  // Another driver may rasterise edges differently: one pixel in a thousand.
   std::size_t different = 0;
   for (std::size_t i = 0; i < egl.image.rgb.size(); ++i) {
     different += std::abs(egl.image.rgb[i] - osmesa.image.rgb[i]) > 8 ? 1 : 0;

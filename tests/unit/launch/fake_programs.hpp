@@ -1,4 +1,4 @@
-// Shell scripts in place of programs of the system.
+// Shell scripts that stand in for system programs.
 #pragma once
 
 #include <cstdlib>
@@ -10,7 +10,7 @@
 
 namespace qsmpc::testing {
 
-/// Puts a folder of scripts before PATH while it lives.
+/// Prepends a folder of scripts to PATH while alive.
 class FakePrograms {
  public:
   FakePrograms() : path_(std::getenv("PATH")) {
@@ -22,7 +22,7 @@ class FakePrograms {
   FakePrograms& operator=(FakePrograms&&) = delete;
   ~FakePrograms() { setenv("PATH", path_.c_str(), 1); }
 
-  /// `name` runs `body` as sh does. Each call is a line of `calls`, its arguments after its name.
+  /// `name` runs `body` in sh. Each call adds a line to `calls`: its name and its arguments.
   void add(const std::string& name, const std::string& body) const {
     const std::string path = folder_.file(name, "#!/bin/sh\necho \"" + name + " $*\" >>'" +
                                                     (folder_ / "calls") + "'\n" + body + "\n");

@@ -31,7 +31,7 @@ using ::testing::StartsWith;
 
 class LocalLauncher : public ::testing::Test {
  protected:
-  /// A worker that is this script, which finds its words in $@.
+  /// A worker that is this script; its arguments are in $@.
   [[nodiscard]] LaunchRequest request(const std::string& script, int tasks) const {
     return {.folder = folder.path(), .worker = {"sh", "-c", script, "sh"}, .tasks = tasks};
   }
@@ -142,14 +142,14 @@ TEST_F(LocalLauncher, cannot_tell_of_processes_of_another_machine) {
   const std::string text = launch_record_text(record);
   EXPECT_EQ(launcher_of(text)->states(text).front().condition, TaskCondition::kRunning);
   record.conductor = this_process();
-  record.conductor.started += 1;  // the number is another process's now
+  record.conductor.started += 1;  // the process id now belongs to another process
   EXPECT_EQ(fate_of(record.conductor), ProcessFate::kGone);
 }
 
 TEST(SshLauncher, loses_a_host_that_fails_and_goes_on_with_the_others) {
   const qsmpc::testing::TemporaryFolder folder;
   const qsmpc::testing::FakePrograms fakes;
-  // As ssh does: the words after the host go to a shell there.
+  // Like ssh: the words after the host are passed to a shell there.
   fakes.add("ssh",
             "while [ \"$1\" != -- ]; do shift; done; "
             "case $2 in bad) echo 'ssh: connect to host bad port 22: Connection refused' >&2; exit "

@@ -27,7 +27,7 @@ class SlurmLauncherWithFakes : public ::testing::Test {
   [[nodiscard]] LaunchRequest request(int tasks) const {
     return {.folder = folder.path(), .worker = {"w"}, .gather = {"g"}, .tasks = tasks};
   }
-  /// What an IoError of `call` says.
+  /// The message of the IoError that `call` throws.
   template <class Call>
   static std::string io_error_of(const Call& call) {
     try {

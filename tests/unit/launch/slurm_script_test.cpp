@@ -57,7 +57,7 @@ TEST(SlurmScript, is_refused_for_folders_that_slurm_cannot_name) {
   }
 }
 
-/// Runs the script of a worker `sh -c SHELL` for task 3; returns the end it leaves.
+/// Runs the script of a worker `sh -c SHELL` for task 3; returns the contents of its end file.
 std::string end_of_script(const std::string& shell, int expected_exit,
                           const std::string& meanwhile = ":", const std::string& before = ":") {
   const qsmpc::testing::TemporaryFolder folder;
@@ -81,14 +81,14 @@ TEST(SlurmScript, leaves_how_the_worker_ended) {
 }
 
 TEST(SlurmScript, passes_sigterm_on_and_waits_for_the_worker) {
-  // The worker takes a while to end after it was asked to.
+  // The worker needs a while to end after the request.
   EXPECT_EQ(end_of_script("trap 'sleep 0.2; exit 130' TERM; : >ready; while :; do sleep 0.05; done",
                           130, "until [ -e ready ]; do sleep 0.02; done; kill -s TERM \"$job\""),
             "cancelled exit code 130\n");
 }
 
 TEST(SlurmScript, passes_a_sigterm_on_that_comes_before_the_worker_runs) {
-  // `rm` is what the script calls before it starts the worker, which would sleep for a minute.
+  // The script calls `rm` before it starts the worker, which would sleep for a minute.
   EXPECT_EQ(end_of_script("exec sleep 60", 143, ":",
                           "printf '#!/bin/sh\\nkill -s TERM \"$PPID\"\\n' >rm && chmod +x rm && "
                           "PATH=$PWD:$PATH"),

@@ -45,7 +45,7 @@ TEST(ClosedLoop, unsafe_periods_are_held_against_what_was_certified_for_them) {
   EXPECT_EQ(loop.periods, 3);
   EXPECT_EQ(loop.unsafe_periods, 1);
   EXPECT_DOUBLE_EQ(loop.certified_periods, 6e-3);
-  // Periods 0 and 2, and 1 with the stand-in for period 3.
+  // Periods 0 and 2, and period 1 with the certificate repeated for the missing period 3.
   EXPECT_DOUBLE_EQ(loop.p_value, exceedance_p_value({{.events = 1, .certified = 4e-3},
                                                      {.events = 0, .certified = 5e-3}}));
   EXPECT_LT(loop.p_value, 0.5) << "1 would hide what is in the sums";
@@ -54,7 +54,7 @@ TEST(ClosedLoop, unsafe_periods_are_held_against_what_was_certified_for_them) {
 }
 
 TEST(EpisodeResult, says_of_each_period_what_was_certified_and_what_happened) {
-  // Too fast to turn back before the wall.
+  // Too fast to turn back in front of the wall.
   const Scenario scenario =
       testing::short_scenario({"safe_set.bounds.x=[-1, 0.4]", "target.state=[0.3, 2.5, 0]",
                                "controller.input_bounds.yaw_rate=[-0.2, 0.2]"});

@@ -34,7 +34,7 @@ class ReadComparison : public ::testing::Test {
   }
   ~ReadComparison() override { std::filesystem::remove_all(folder_); }
 
-  /// What is said against the file; empty if it is read.
+  /// The error message for the file; empty if it is read.
   [[nodiscard]] std::string refusal() const {
     try {
       (void)read_comparison(folder_);
@@ -48,7 +48,7 @@ class ReadComparison : public ::testing::Test {
   Comparison written_;
 };
 
-// A controller without a plan is compared for the next step alone.
+// A controller without a plan is compared for the next step only.
 TEST_F(ReadComparison, takes_what_any_controller_decides) {
   for (const controller::ControllerEntry& entry : controller::controllers()) {
     for (const char* about : {"path", "target"}) {
@@ -135,7 +135,7 @@ TEST_F(ReadComparison, refuses_a_damaged_file_and_one_that_is_cut_short) {
   EXPECT_EQ(refusal(), "");
 }
 
-/// A file as the version before this one wrote it, but for its paths.
+/// A file as the previous version wrote it, except for its paths.
 TEST_F(ReadComparison, an_older_file_has_no_speed_and_no_p_values_but_its_sums) {
   const std::string path = folder_ + "/" + kComparisonFile;
   const Hdf5File source = Hdf5File::open(path);

@@ -30,7 +30,7 @@ ComparisonOptions small_options(const std::vector<std::string>& plants) {
   return options;
 }
 
-/// The numbers, but for those of the wall clock.
+/// The numbers, except wall-clock values.
 std::string numbers_of(Comparison comparison) {
   for (PlantComparison& plant : comparison.plants) plant.speed = 1.0;
   return comparison_json(comparison);
@@ -53,7 +53,7 @@ TEST(ComparePlants, gives_the_same_bits_for_any_number_of_threads) {
   }
 }
 
-// It would make results depend on how busy the machine is.
+// It would make results depend on the machine's load.
 TEST(ComparePlants, a_deadline_of_the_planner_is_left_out) {
   const auto without = compare_plants(testing::short_scenario(), small_options({"analytic"}));
   const auto with = compare_plants(testing::short_scenario({"controller.deadline=1e-6"}),
@@ -107,8 +107,8 @@ TEST(ComparePlants, the_analytic_plant_is_the_model_but_for_rounding) {
   }
 }
 
-// The corridor's car turns along arcs, as its joints do: what separates these from the model is
-// MuJoCo's integrator; what separates the wheeled car is tyres, suspension and servos.
+// The corridor's car turns along arcs, as the planar car's joints do: the planar car differs from
+// the model only by MuJoCo's integrator, the wheeled car by tyres, suspension and servos.
 TEST(ComparePlants, in_the_corridor_the_planar_car_is_nearer_to_the_model_than_the_wheeled_one) {
   const Scenario corridor = load_scenario("dubins_corridor", {"vehicle.footprint=point"});
   ComparisonOptions options = small_options({"analytic", "mujoco_planar", "mujoco_car"});
@@ -140,7 +140,7 @@ TEST(ComparePlants, a_mujoco_vehicle_is_not_the_model) {
   EXPECT_GT(plant.one_step.rmse[0], 1e-6);
   EXPECT_GT(plant.horizon.back().divergence_rmse[0], plant.one_step.rounding[0]);
   EXPECT_GT(plant.speed, 0.0);
-  // Some period errs as much as all of them together, or more.
+  // Some period has at least the error of all of them together.
   const controller::ModelError& error = *comparison->measured_error;
   EXPECT_EQ(error.first.size(), 2U) << "all periods of the plan but the last";
   Eigen::VectorXd most = error.root_mean_square;

@@ -36,12 +36,11 @@ TEST(MeasuredModelError, is_above_the_true_norms_about_as_often_as_it_says) {
     }
     too_small += measured_model_error({sample}, run).root_mean_square[0] < 0.3 ? 1 : 0;
   }
-  // One is expected of 100; 6 or more have a probability of 5e-4.
+  // One of 100 is expected; 6 or more have a probability of 5e-4.
   EXPECT_LE(too_small, 5);
 }
 
-// The fewer the episodes, the wider the margin; the many periods of an episode do not help where
-// they are all alike.
+// Fewer episodes give a wider margin; many periods per episode do not help if they are all alike.
 TEST(MeasuredModelError, episodes_are_what_is_independent) {
   ResidualSample constant;
   ResidualSample changing;
@@ -68,7 +67,7 @@ TEST(MeasuredModelError, takes_the_worst_sample_and_the_worst_period) {
   EXPECT_NEAR(error.mean[0], 0.1, 1e-12) << "information on the first sample";
 }
 
-/// Two units of three periods: 0.5 ± 0.1, then 0.2, then 0.05.
+/// Two units with three periods: 0.5 ± 0.1, then 0.2, then 0.05.
 std::vector<Eigen::MatrixXd> setting_out() {
   Eigen::MatrixXd one(1, 3);
   Eigen::MatrixXd other(1, 3);
@@ -83,7 +82,7 @@ TEST(MeasuredModelError, of_first_periods_is_their_own_about_their_mean) {
   EXPECT_EQ(error.offset.size(), 0);
   ASSERT_EQ(error.first.size(), 2U);
   EXPECT_NEAR(error.first[0].offset[0], 0.5, 1e-12);
-  // Both are 0.1 away from it, in every replicate; the mean is one of two.
+  // Both differ from the mean by 0.1 in every replicate; the mean itself is estimated from two.
   EXPECT_NEAR(error.first[0].root_mean_square[0], 0.1 * std::sqrt(3.0), 1e-12);
   EXPECT_NEAR(error.first[0].higher[1][0], 0.1 * std::sqrt(3.0), 1e-12);
   EXPECT_NEAR(error.first[1].offset[0], 0.2, 1e-12);
@@ -126,7 +125,7 @@ TEST(MeasuredModelError, of_a_single_unit_has_no_offset) {
   EXPECT_NEAR(error.first[0].root_mean_square[0], 0.6, 1e-12);
 }
 
-// About the mean of the very units that it is measured from.
+// About the mean of the same units that the error is measured from.
 TEST(MeasuredModelError, about_an_offset_is_above_the_true_norms_about_as_often_as_it_says) {
   int too_small = 0;
   constexpr int kRuns = 100;
@@ -139,7 +138,7 @@ TEST(MeasuredModelError, about_an_offset_is_above_the_true_norms_about_as_often_
     const double truth = std::hypot(0.3, own.offset[0] - 2.0);
     too_small += own.root_mean_square[0] < truth ? 1 : 0;
   }
-  // One is expected of 100; 6 or more have a probability of 5e-4.
+  // One of 100 is expected; 6 or more have a probability of 5e-4.
   EXPECT_LE(too_small, 5);
 }
 

@@ -1,4 +1,4 @@
-// Scenarios and plants of the tests of comparisons.
+// Scenarios and plants for the tests of comparisons.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace qsmpc::testing {
 
-/// A car that is at its target soon, of few particles.
+/// A car that reaches its target soon, with few particles.
 inline harness::Scenario short_scenario(const std::vector<std::string>& overrides = {}) {
   return harness::parse_scenario(
       "name: short\n"
@@ -36,7 +36,7 @@ inline harness::Scenario short_scenario(const std::vector<std::string>& override
       {.overrides = overrides});
 }
 
-/// Moves as the plant in it and is then off by `bias`; breaks where x is beyond `breaks_at`.
+/// Moves as the wrapped plant, then is off by `bias`; breaks where x exceeds `breaks_at`.
 class AlteredPlant final : public harness::Plant {
  public:
   AlteredPlant(std::unique_ptr<harness::Plant> plant, Eigen::VectorXd bias, double breaks_at)
@@ -70,7 +70,7 @@ inline harness::PlantPool altered_plants(const harness::Scenario& scenario,
       });
 }
 
-/// A plan of a scenario, and paths under it.
+/// A plan of a scenario, and paths under its policy.
 struct Planned {
   explicit Planned(const harness::Scenario& planned_scenario) : scenario(planned_scenario) {
     model = harness::model_of(scenario);

@@ -19,9 +19,9 @@ using testing::altered_plants;
 using testing::Planned;
 using testing::short_scenario;
 
-constexpr std::int64_t kPaths = 130;  // no multiple of a batch
+constexpr std::int64_t kPaths = 130;  // not a multiple of a batch
 
-/// A unit mass far from the bounds of its input.
+/// A unit mass far from its input bounds.
 Scenario mass_scenario(const std::string& policy) {
   return parse_scenario(
       "name: mass\nmodel: {system: double_integrator}\nplant: {kind: analytic}\n"
@@ -65,8 +65,8 @@ TEST(PlantPaths, a_bias_of_the_plant_is_its_residual) {
   }
 }
 
-// A double integrator in open loop: what is added to position and velocity in every period stays,
-// and the velocity's moves the position, by the model's own equations.
+// A double integrator in open loop: additions to position and velocity persist, and the velocity's
+// also changes the position, by the model's own equations.
 TEST(PlantPaths, a_bias_adds_up_along_the_horizon_by_the_models_equations) {
   const Planned planned(mass_scenario("open_loop"));
   const Eigen::Vector2d bias(0.002, 0.03);
@@ -87,7 +87,7 @@ TEST(PlantPaths, a_bias_adds_up_along_the_horizon_by_the_models_equations) {
 }
 
 // In closed loop the difference e of plant and model obeys e⁺ = (A + B K) e + bias while no input
-// is at its bounds: each of the two is fed back its own state.
+// is at its bounds, as each is fed back its own state.
 TEST(PlantPaths, plant_and_model_are_each_fed_back_their_own_state) {
   const Planned planned(mass_scenario("closed_loop"));
   const Eigen::Vector2d bias(0.002, 0.03);
@@ -206,7 +206,7 @@ TEST(PlantPaths, a_drawn_vehicle_that_the_simulator_refuses_is_counted_and_ends_
   EXPECT_EQ(paths.faults, kPaths / 10);
   EXPECT_TRUE(std::isnan(paths.states.back()(0, 0)));
   EXPECT_TRUE(std::isfinite(paths.states.back()(0, 1)));
-  // Where all are alike, it is the file that is wrong.
+  // If all are alike, the file is wrong.
   EXPECT_THROW((void)PlantPool(make), SimulatorError);
 }
 
@@ -246,7 +246,7 @@ TEST(W2Floors, of_independent_ensembles_spread_about_what_one_more_has) {
       paths_of(pool, planned),
       model_paths(*planned.model, planned.source(), kPaths, controller::run_in_turn),
       planned.particles, planned.scenario.safe_set, {.w2_paths = kPaths}, controller::run_in_turn);
-  // Student's t with seven degrees of freedom, widened for one draw more: 1 in 1000.
+  // Student's t with seven degrees of freedom, widened for one more draw: 1 in 1000.
   const double limit = 5.41 * std::sqrt(1.0 + 1.0 / kFloorEnsembles);
   for (const HorizonStage& stage : horizon) {
     const W2Floor& floor = floors[static_cast<std::size_t>(stage.stage)];

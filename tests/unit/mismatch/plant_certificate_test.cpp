@@ -1,5 +1,5 @@
-// What a comparison is for: a plant that certificates of the model do not cover is found, and those
-// with its measured error cover it.
+// The purpose of a comparison: it detects a plant that the model's certificates do not cover, and
+// certificates with its measured error cover it.
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ std::vector<controller::StageCertificate> certificates(const Planned& planned,
   return controller::certify(motion, planned.scenario.safe_set, controller::error_budget(motion));
 }
 
-// A side wind of 0.15 m a period towards a wall that the model keeps away from.
+// A side wind of 0.15 m per period towards a wall that the model keeps clear of.
 TEST(PlantCertificates, those_of_the_model_are_exceeded_and_those_with_the_measured_error_hold) {
   const Planned planned(testing::short_scenario());
   PlantPool pool = testing::altered_plants(planned.scenario, Eigen::Vector3d(0.0, -0.15, 0.0));
@@ -59,7 +59,7 @@ TEST(PlantCertificates, those_of_the_model_are_exceeded_and_those_with_the_measu
   EXPECT_THAT(exceeded_stages(horizon, certificates(planned, plan, planner, &error)), IsEmpty());
 }
 
-// The same with the shipped car on wheels, measured on other random numbers than it is judged by.
+// The same with the shipped wheeled car, measured and judged on different random numbers.
 TEST(PlantCertificates, with_the_measured_error_hold_for_the_car_on_wheels_on_other_seeds) {
   Scenario scenario = load_scenario("car_past_a_wall", {});
   ComparisonOptions options{
@@ -68,7 +68,7 @@ TEST(PlantCertificates, with_the_measured_error_hold_for_the_car_on_wheels_on_ot
   const auto measured = compare_plants(scenario, options);
   ASSERT_TRUE(measured.has_value());
   EXPECT_THAT(measured->plants.front().exceeded_stages, ::testing::Not(IsEmpty()));
-  options.episodes = 1;  // the paths are what it is judged by
+  options.episodes = 1;  // it is judged by the paths
   scenario.seed = 1000;
   scenario.model_error = measured->measured_error;
   const auto judged = compare_plants(scenario, options);
@@ -76,7 +76,7 @@ TEST(PlantCertificates, with_the_measured_error_hold_for_the_car_on_wheels_on_ot
   EXPECT_THAT(judged->plants.front().exceeded_stages, IsEmpty());
   EXPECT_THAT(exceeded_stages(judged->plants.front().horizon, judged->certificates),
               ::testing::Not(IsEmpty()));
-  // They say something: at the worst stage some 0.3 of the paths are unsafe.
+  // They are not trivial: at the worst stage about 0.3 of the paths are unsafe.
   ASSERT_TRUE(judged->with_error.has_value());
   for (const controller::StageCertificate& certificate : *judged->with_error) {
     EXPECT_LT(certificate.value, 0.7);

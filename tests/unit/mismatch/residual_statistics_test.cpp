@@ -34,7 +34,7 @@ TEST(ResidualStatistics, mean_covariance_and_rmse_are_over_all_periods_of_all_ep
   EXPECT_NEAR(statistics.covariance(0, 1), 8.0 / 3.0, 1e-14);
 }
 
-// Deviations from the mean 1: sums by episode +2 and −2, two episodes, four periods:
+// Deviations from the mean 1: sums per episode +2 and −2, two episodes, four periods:
 // √((4 + 4)·2/1)/4.
 TEST(ResidualStatistics, the_mean_is_as_uncertain_as_whole_episodes_make_it) {
   const ResidualStatistics statistics =
@@ -52,13 +52,13 @@ TEST(ResidualStatistics, of_one_episode_the_statistic_is_that_of_ljung_and_box) 
   EXPECT_NEAR(whiteness.lag1_deviation, std::sqrt(3.0 / 24.0), 1e-14);
   // n (n + 2) Σ ρ_h²/(n − h) with ρ = −3/4, 1/2, −1/4.
   EXPECT_NEAR(whiteness.ljung_box[0], 24.0 * (0.5625 / 3.0 + 0.25 / 2.0 + 0.0625 / 1.0), 1e-13);
-  // χ² of three degrees above 9: erfc(√4.5) + √(18/π) e^(−4.5).
+  // χ² with three degrees of freedom above 9: erfc(√4.5) + √(18/π) e^(−4.5).
   EXPECT_NEAR(whiteness.p_value[0],
               std::erfc(std::sqrt(4.5)) + std::sqrt(18.0 / M_PI) * std::exp(-4.5), 1e-12);
 }
 
 TEST(ResidualStatistics, periods_of_different_episodes_are_no_neighbours) {
-  // Joined, they would be 1, 1, −1, −1 with two pairs more.
+  // Joined, they would be 1, 1, −1, −1 with two more pairs.
   const Whiteness whiteness =
       residual_statistics({row({1.0, 1.0}), row({-1.0, -1.0})}, kOne).whiteness;
   EXPECT_EQ(whiteness.lags, 1);
@@ -85,7 +85,7 @@ TEST(ResidualStatistics, white_noise_is_found_white_and_one_with_a_memory_is_not
     const Whiteness white = residual_statistics(random_episodes(seed, 0.0), kOne).whiteness;
     rejected += white.p_value[0] < 0.05 ? 1 : 0;
   }
-  // 10 of 200 are expected; 3 … 20 but for a chance of 0.004.
+  // 10 of 200 are expected; 3 … 20 with a probability of all but 0.004.
   EXPECT_GE(rejected, 3);
   EXPECT_LE(rejected, 20);
   const Whiteness coloured = residual_statistics(random_episodes(1, 0.5), kOne).whiteness;

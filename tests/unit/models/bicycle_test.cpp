@@ -1,4 +1,4 @@
-// What is particular to the dynamic bicycle: its equation, its physics, its poles.
+// Properties specific to the dynamic bicycle: its equation, its physics, its poles.
 #include "models/dynamics/bicycle.hpp"
 
 #include <cmath>
@@ -36,7 +36,7 @@ State driving(double speed) {
   return state;
 }
 
-/// Eq. 5-4 as printed.
+/// Eq. 5-4 as published.
 State printed_step(const State& x, const Input& u) {
   const double t = kTimeStep;
   const double heading = x[2], v = x[3], lateral = x[4], rate = x[5];
@@ -55,7 +55,7 @@ State printed_step(const State& x, const Input& u) {
   return next;
 }
 
-/// ẋ of the continuous single-track model on linear tyres, from the axles' forces.
+/// ẋ of the continuous single-track model with linear tyres, from the axle forces.
 State continuous_derivative(const State& x, const Input& u) {
   const double heading = x[2], v = x[3], lateral = x[4], rate = x[5];
   const double front_force = kFrontStiffness * ((lateral + kFront * rate) / v - u[1]);
@@ -85,14 +85,14 @@ TEST_F(BicycleTest, step_is_the_printed_equation) {
   for (int repetition = 0; repetition < 100; ++repetition) {
     const State state = random_state();
     const Input input = random_input();
-    // Two forms of the same rational function of values of the order of ten.
+    // Two forms of the same rational function, for values of order ten.
     EXPECT_LE((step_of(*car_, state, input) - printed_step(state, input)).cwiseAbs().maxCoeff(),
               1e-13);
   }
 }
 
-// The method is of first order: the slope of a step of T differs from the derivative by T times the
-// second derivative, here of the order of 1e4 (the tyres' rates are about 100 / s).
+// The method is of first order: the slope of a step of length T differs from the derivative by T
+// times the second derivative, here of order 1e4 (the tyres' rates are about 100 / s).
 TEST_F(BicycleTest, short_steps_follow_the_continuous_equations) {
   constexpr double kShort = 1e-8;
   const auto car = make_dynamics("bicycle", {}, kShort);

@@ -1,4 +1,4 @@
-// What is particular to the pole on a cart: its equations of motion, their damping, and its two
+// Properties specific to the cart-pole: its equations of motion, their damping, and its two
 // equilibria.
 #include "models/dynamics/cart_pole.hpp"
 
@@ -47,7 +47,7 @@ TEST(CartPole, energy_is_kept_without_a_force) {
   State state(0.0, 0.4, 0.5, -1.0);
   const double before = energy(model, state);
   for (int k = 0; k < 2000; ++k) state = step_of(model, state, 0.0);
-  // A method of fourth order over 2 s: 1e-12 for rates of about 5 / s.
+  // A fourth-order method over 2 s: 1e-12 for rates of about 5 / s.
   EXPECT_NEAR(energy(model, state), before, 1e-9);
 }
 
@@ -78,7 +78,7 @@ TEST(CartPole, damping_takes_what_it_does_not_leave_to_the_energy) {
     state = step_of(model, state, 0.0);
     lost += 0.5 * model.time_step * (at_start + loss(state));
   }
-  // The trapezoidal rule over 2 s: T² times the change of the loss's slope, some 40 W/s, over 12.
+  // The trapezoidal rule over 2 s: T²/12 times the change of the loss's slope, about 40 W/s.
   EXPECT_NEAR(energy(model, state), before - lost, 1e-5);
   EXPECT_GT(lost, 1.0);
 }

@@ -11,10 +11,10 @@ namespace qsmpc::models {
 namespace derivative_bounds_test {
 
 using namespace testing;
-// The Jacobians compared with are computed by other sums and products, with values of the order of
-// a hundred at most.
+// The reference Jacobians are computed by other sums and products, with values of order one hundred
+// at most.
 constexpr double kRounding = 1e-12;
-// Central differences of Jacobians: h² |f''''|/6 + ε |f'|/h with values of the order of a hundred.
+// Central differences of Jacobians: h² |f''''|/6 + ε |f'|/h for values of order one hundred.
 constexpr double kDifferenceStep = 1e-4;
 constexpr double kDifferenceTolerance = 1e-5;
 
@@ -34,7 +34,7 @@ class DerivativeBoundsOfEverySystem : public EverySystem {
     return point;
   }
 
-  /// A box about a random point, from tiny to as wide as the fixture's states.
+  /// A box around a random point, from tiny to as wide as the fixture's states.
   [[nodiscard]] Box random_box() {
     std::uniform_real_distribution<double> exponent(-4.0, 0.5);
     const Eigen::VectorXd first = random_point();

@@ -1,4 +1,4 @@
-// What is particular to the double integrator: exact motion, and a Lipschitz constant that is
+// Properties specific to the double integrator: exact motion, and a Lipschitz constant that is
 // attained.
 #include "models/dynamics/double_integrator.hpp"
 
@@ -35,7 +35,7 @@ TEST(DoubleIntegrator, step_is_that_of_the_runge_kutta_method) {
 
 TEST(DoubleIntegrator, lipschitz_constant_is_attained_open_and_closed_loop) {
   const auto point = make_dynamics("double_integrator", {}, kTimeStep);
-  // Feedback that makes it wilder than it is without, so that the regulated part counts.
+  // Feedback that increases the constant, so that the regulated part counts.
   for (const Eigen::RowVector2d& gain :
        {Eigen::RowVector2d(0.0, 0.0), Eigen::RowVector2d(-3.0, -2.0),
         Eigen::RowVector2d(9.0, 4.0)}) {

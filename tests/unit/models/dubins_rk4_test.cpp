@@ -1,4 +1,4 @@
-// What is particular to the Dubins car by the Runge-Kutta method: it drives along arcs, and its
+// Properties specific to the Dubins car by the Runge-Kutta method: it drives along arcs, and its
 // Lipschitz constants.
 #include "models/dynamics/dubins_rk4.hpp"
 
@@ -30,7 +30,7 @@ State step_of(const DubinsRk4& model, const State& state, double yaw_rate) {
   return next;
 }
 
-/// Where a circle of radius v/u leads in `duration` (s), u ≠ 0.
+/// The end point of an arc of radius v/u after `duration` (s), u ≠ 0.
 State arc(const State& state, double yaw_rate, double duration) {
   const double radius = kSpeed / yaw_rate;
   const double begin = state[DubinsRk4::kHeading];
@@ -72,7 +72,7 @@ TEST(DubinsRk4, stays_on_the_arc_within_the_bound_of_simpsons_rule) {
         const State error = step_of(model, state, yaw_rate) - arc(state, yaw_rate, period);
         const double bound = kSpeed * period * std::pow(yaw_rate * period, 4) / 2880.0;
         EXPECT_LE(error.head<2>().norm(), bound + kRounding);
-        // The bound is that of the fourth derivative, which turns little over a period.
+        // The bound uses the maximum of the fourth derivative, which changes little over a period.
         EXPECT_GE(error.head<2>().norm(), 0.8 * bound - kRounding);
         EXPECT_NEAR(error[DubinsRk4::kHeading], 0.0, kRounding);
       }
@@ -80,7 +80,7 @@ TEST(DubinsRk4, stays_on_the_arc_within_the_bound_of_simpsons_rule) {
   }
 }
 
-/// How far off the arc the end of one second is, with periods of 1/count seconds.
+/// Distance from the arc after one second, with periods of 1/count seconds.
 double error_after_a_second(int count) {
   const DubinsRk4 model{.speed = kSpeed, .time_step = 1.0 / count};
   const State begin(0.4, -0.2, 0.3);
@@ -90,7 +90,7 @@ double error_after_a_second(int count) {
 }
 
 TEST(DubinsRk4, halving_the_period_divides_the_error_by_sixteen) {
-  // Fourth order; the next term is (uT)² ≈ 0.2 smaller, and its factor again.
+  // Fourth order; the next term is smaller by (uT)² ≈ 0.2 and its factor.
   EXPECT_NEAR(error_after_a_second(4) / error_after_a_second(8), 16.0, 0.1);
   EXPECT_NEAR(error_after_a_second(8) / error_after_a_second(16), 16.0, 0.1);
 }
@@ -111,7 +111,7 @@ TEST(DubinsRk4, is_described_as_the_dubins_car) {
   EXPECT_EQ(found.position_x, DubinsRk4::kX);
   EXPECT_EQ(found.position_y, DubinsRk4::kY);
   EXPECT_EQ(found.heading, DubinsRk4::kHeading);
-  // Its position depends on the yaw rate of the same period: it is none of these.
+  // Its position depends on the yaw rate of the same period, so it has no unicycle structure.
   EXPECT_FALSE(car->unicycle().has_value());
 }
 
@@ -128,7 +128,7 @@ TEST(DubinsRk4, lipschitz_constant_is_little_above_what_jacobians_attain) {
     const Eigen::RowVector3d gain = random_batch(generator, 1, 3, 4.0);
     double attained = 0.0;
     for (int i = 0; i < 360; ++i) {
-      // The yaw rate as the feedback has it, between its bounds; and straight ahead, saturated.
+      // With the feedback's yaw rate, within its bounds; and straight ahead, saturated.
       const State state(0.0, 0.0, 2.0 * std::numbers::pi * i / 360.0);
       Eigen::MatrixXd by_state(3, 3);
       Eigen::MatrixXd by_input(3, 1);

@@ -1,4 +1,4 @@
-// What is particular to the Dubins car: its formula, its Lipschitz constants, its structure.
+// Properties specific to the Dubins car: its formula, its Lipschitz constants, its structure.
 #include "models/dynamics/dubins.hpp"
 
 #include <cmath>
@@ -58,9 +58,9 @@ TEST(Dubins, open_loop_lipschitz_constant_is_the_closed_form_and_attained) {
   const auto car = make_dynamics("dubins", {{"speed", kSpeed}}, kTimeStep);
   const double bound = car->lipschitz(Eigen::MatrixXd::Zero(1, 3));
   EXPECT_NEAR(bound, 0.5 * kReach + std::sqrt(1.0 + 0.25 * kReach * kReach), kRounding);
-  EXPECT_NEAR(bound, 1.0778, 5e-5);  // as printed, four decimals
-  // A pair along the best right singular vector at φ = 0, near enough for second order not to
-  // matter (1e-4), shows that nothing below 1 − 1e-3 of the bound would do.
+  EXPECT_NEAR(bound, 1.0778, 5e-5);  // as published, four decimals
+  // A pair along the best right singular vector at φ = 0, close enough for second order not to
+  // matter (1e-4), attains 1 − 1e-3 of the bound.
   double attained = 0.0;
   for (int i = 0; i < 360; ++i) {
     const double angle = i * std::acos(-1.0) / 360.0;

@@ -1,4 +1,4 @@
-// Every system of the table, and those of users, for tests that each system must pass.
+// Every system of the table and the user-defined ones, for tests that each system must pass.
 #pragma once
 
 #include <memory>
@@ -26,7 +26,7 @@ class EverySystem : public ::testing::TestWithParam<std::string> {
   EverySystem() : dynamics_(make_any_dynamics(GetParam(), kTimeStep)) {}
 
   [[nodiscard]] const models::Dynamics& dynamics() const { return *dynamics_; }
-  /// Within ±4 of zero in every coordinate, but for a car's speed, which is positive.
+  /// Within ±4 of zero in every coordinate, except the car's speed, which is positive.
   [[nodiscard]] models::StateBatch states(Eigen::Index count) {
     models::StateBatch batch = random_batch(generator_, dynamics().state_dim(), count, 4.0);
     const int speed = dynamics().description().state_index("longitudinal_speed");

@@ -1,4 +1,4 @@
-// Systems by formulas: what they compute, and which are refused.
+// Systems by formulas: their values, and refused systems.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -126,7 +126,7 @@ TEST(Equations, integrate_continuous_ones) {
         ->step(StateBatch::Constant(1, 1, 2.0), StateBatch::Zero(1, 1), next);
     return std::abs(next(0, 0) - exact);
   };
-  // Of first and of fourth order.
+  // Of first and fourth order.
   const double euler = error_of(EquationSystem::Time::kEuler, 10);
   EXPECT_NEAR(error_of(EquationSystem::Time::kEuler, 20) / euler, 0.5, 0.02);
   const double fourth = error_of(EquationSystem::Time::kRungeKutta, 1);
@@ -169,7 +169,7 @@ TEST(Equations, recorded_from_cpp_are_what_is_compiled) {
     StateBatch other(dim, 50);
     recorded->step(states, inputs, one);
     compiled->step(states, inputs, other);
-    // Sines that differ in the last place.
+    // Sines may differ in the last place.
     EXPECT_LE((one - other).cwiseAbs().maxCoeff(), 1e-14) << name;
     StateBatch input_one(2, 50);
     StateBatch input_other(2, 50);
@@ -186,7 +186,7 @@ struct WrongSystem {
   const char* section;
   const char* key;
   const char* found;
-  const char* expected;  // or a name that is known
+  const char* expected;  // or a known name
 };
 
 class WrongEquations : public ::testing::TestWithParam<WrongSystem> {};
@@ -257,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "equations", "", "too long", "fewer substeps"}),
     name_of);
 
-// Where a function has a kink, a pole or an end, what is not known is infinite and never NaN.
+// At a kink, a pole or the end of a domain, unknown bounds are infinite and never NaN.
 class UnknownDerivatives : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(UnknownDerivatives, are_bounded_by_infinity) {

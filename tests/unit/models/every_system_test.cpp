@@ -1,4 +1,4 @@
-// Checks that every system of the table must pass: a new one is tested the day it is listed.
+// Requirements on every system of the table, so that new ones are tested once listed.
 #include <cmath>
 #include <limits>
 #include <set>
@@ -14,14 +14,14 @@ namespace every_system_test {
 
 using namespace testing;
 
-// Central differences with step h have the error h² |f'''|/6 + ε |f|/h: about 1e-10 with values of
-// the order of ten, and a hundred times that is allowed.
+// Central differences with step h have the error h² |f'''|/6 + ε |f|/h: about 1e-10 for values of
+// order ten; a hundred times that is allowed.
 constexpr double kDifferenceStep = 1e-5;
 constexpr double kDifferenceTolerance = 1e-8;
-// Two ways of computing the same products and sums of values of the order of ten.
+// Two ways of computing the same products and sums of values of order ten.
 constexpr double kRounding = 1e-13;
-// Systems that have no Lipschitz constant on the whole space; local_lipschitz_test holds those that
-// they have on a region against samples.
+// Systems without a global Lipschitz constant; local_lipschitz_test compares their constants on a
+// region with samples.
 const std::set<std::string> kWithoutConstant = {"bicycle",
                                                 "cart_pole",
                                                 "every_function",
@@ -135,7 +135,7 @@ TEST_P(EverySystem, lipschitz_constant_is_at_least_every_sampled_ratio) {
     loop.lower = random_batch(generator_, input_dim, 1, 1.0).array() - 1.0;
     loop.upper = loop.lower.array() + 1.0 + std::pow(10.0, exponent(generator_) + 2.0);
     const double bound = dynamics().lipschitz(loop.gain);
-    // Elsewhere the comparison below could not fail.
+    // With an infinite bound the comparison below could not fail.
     EXPECT_EQ(std::isinf(bound), kWithoutConstant.contains(GetParam())) << loop.gain;
     for (int pair = 0; pair < 50; ++pair) {
       const Eigen::VectorXd first = states(1).col(0);
@@ -143,7 +143,7 @@ TEST_P(EverySystem, lipschitz_constant_is_at_least_every_sampled_ratio) {
       const Eigen::VectorXd second =
           first + distance * random_batch(generator_, dim, 1, 1.0).col(0).normalized();
       const Eigen::VectorXd gap = step(first, loop.input(first)) - step(second, loop.input(second));
-      // Rounding of states of the order of ten, compared with distances down to 1e-6.
+      // Rounding of states of order ten, compared with distances down to 1e-6.
       EXPECT_LE(gap.norm(), bound * (second - first).norm() + kRounding);
     }
   }

@@ -1,4 +1,4 @@
-// What formulas mean, and what is said of those that mean nothing.
+// The meaning of formulas, and error messages for invalid ones.
 #include "models/dynamics/equations/expression.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Interval arithmetic beside MPFI's, of 200 bits: it encloses the exact range, and by little more.
+// Interval arithmetic compared with 200-bit MPFI: it encloses the exact range tightly.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -16,10 +16,10 @@ namespace interval_oracle_test {
 
 constexpr int kBits = 200;
 constexpr int kRepetitions = 4000;
-// Of the larger end: functions move each end outwards by a few units in the last place.
+// Relative to the larger end: functions move each end outwards by a few units in the last place.
 constexpr double kSlack = 1e-14;
 
-/// An interval of MPFI, with the rule of who frees it.
+/// An owning wrapper of an MPFI interval.
 class Exact {
  public:
   Exact() { mpfi_init2(value_, kBits); }
@@ -33,7 +33,7 @@ class Exact {
   ~Exact() { mpfi_clear(value_); }
 
   mpfi_ptr get() { return value_; }
-  /// Whether `interval` holds all of it.
+  /// Whether `interval` contains all of it.
   [[nodiscard]] bool is_within(const Interval& interval) const {
     return mpfr_cmp_d(&value_->left, interval.lower()) >= 0 &&
            mpfr_cmp_d(&value_->right, interval.upper()) <= 0;
@@ -71,7 +71,7 @@ std::vector<Function> functions() {
           {"abs", [](const Interval& a) { return abs(a); }, mpfi_abs}};
 }
 
-/// Of any width from a single number to all of the range; often near zero or a whole number.
+/// Of any width from a single number to the whole range; often near zero or a whole number.
 Interval random_interval(std::mt19937_64& generator, double lowest, double highest) {
   std::uniform_real_distribution<double> within(lowest, highest);
   std::uniform_real_distribution<double> share(0.0, 1.0);
@@ -102,7 +102,7 @@ TEST(IntervalOracle, functions_enclose_the_exact_range_closely) {
       Exact result;
       function.exact(result.get(), argument.get());
       const double size = std::max(std::abs(result.lower()), std::abs(result.upper()));
-      // Values about 1 are as near as values of about 1 can be, as of sines far from zero.
+      // Values about 1, such as sines far from zero, are as accurate as values of that size can be.
       expect_enclosed(function.ours(a), result, std::max(1.0, size),
                       function.name + " of [" + std::to_string(a.lower()) + ", " +
                           std::to_string(a.upper()) + "]");

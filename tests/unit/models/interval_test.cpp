@@ -1,4 +1,4 @@
-// Interval arithmetic encloses, says "everything" where nothing is known, and is never NaN.
+// Interval arithmetic encloses, gives the whole line where nothing is known, and is never NaN.
 #include "models/dynamics/interval.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace qsmpc::models {
 namespace interval_test {
 constexpr double kPi = std::numbers::pi;
-// What ends may exceed the exact ones by: a few units in the last place of values up to a hundred.
+// Allowed excess over the exact ends: a few units in the last place of values up to one hundred.
 constexpr double kRounding = 1e-13;
 
 bool is_everything(const Interval& interval) {
@@ -33,7 +33,7 @@ void expect_ends(const Interval& interval, double lower, double upper) {
   }
 }
 
-/// Intervals of all signs and widths, degenerate and unbounded ones among them.
+/// Intervals of all signs and widths, including degenerate and unbounded ones.
 std::vector<Interval> all_kinds() {
   const std::vector<double> ends = {-kInfinity, -7.0, -2.5, -1e-9, 0.0, 1e-9, 0.3, 4.0, kInfinity};
   std::vector<Interval> intervals;
@@ -47,11 +47,11 @@ std::vector<Interval> all_kinds() {
   return intervals;
 }
 
-/// A number in the interval, of any size where it is unbounded.
+/// A number in the interval; of any size if the interval is unbounded.
 double random_member(const Interval& interval, std::mt19937_64& generator) {
   const double lower = std::max(interval.lower(), -1e3);
   const double upper = std::min(interval.upper(), 1e3);
-  std::uniform_real_distribution<double> share(-0.1, 1.1);  // now and then one of the ends
+  std::uniform_real_distribution<double> share(-0.1, 1.1);  // occasionally one of the ends
   return std::clamp(lower + share(generator) * (upper - lower), lower, upper);
 }
 
@@ -129,7 +129,7 @@ TEST(Interval, operations_enclose_their_values_and_are_never_nan) {
   }
 }
 
-// The rounded sum of 1 and 1e-20 is 1, which is not the sum.
+// The rounded sum of 1 and 1e-20 is 1, which is not the exact sum.
 TEST(Interval, rounding_is_enclosed) {
   const Interval sum = Interval(1.0) + Interval(1e-20);
   EXPECT_LT(sum.lower(), 1.0);

@@ -74,7 +74,7 @@ TEST_P(LocalLipschitzOfEverySystem, is_at_least_every_sampled_ratio) {
       const Eigen::VectorXd first = random_state_in(loop);
       const Eigen::VectorXd second = random_state_in(loop);
       const Eigen::VectorXd gap = step(first, loop.input(first)) - step(second, loop.input(second));
-      // Rounding of states of the order of a hundred.
+      // Rounding of states of order one hundred.
       EXPECT_LE(gap.norm(), bound * (second - first).norm() + 1e-12);
     }
   }
@@ -114,7 +114,7 @@ TEST_P(LocalLipschitzOfEverySystem, gain_of_another_shape_is_refused) {
 
 INSTANTIATE_TEST_SUITE_P(systems, LocalLipschitzOfEverySystem, ::testing::ValuesIn(system_names()));
 
-// Entry by entry the enclosure forgets that cos² + sin² = 1: 1.112 where 1.078 is exact.
+// The entrywise enclosure does not use cos² + sin² = 1: 1.112 instead of the exact 1.078.
 TEST(LocalLipschitz, of_a_car_in_any_direction_is_close_to_its_global_constant) {
   const auto car = make_dynamics("dubins", {}, kTimeStep);
   const double infinity = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// The table of systems refuses what it does not know and says what it knows.
+// The table of systems refuses unknown names and lists the known ones.
 #include <cmath>
 #include <functional>
 #include <limits>

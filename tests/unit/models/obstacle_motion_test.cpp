@@ -1,4 +1,4 @@
-// Ways of obstacles: where they lead, which way they face, and which are refused.
+// Obstacles' ways: positions, headings, and refused ways.
 #include "models/motion/obstacle_motion.hpp"
 
 #include <cmath>
@@ -44,7 +44,7 @@ TEST(ObstacleMotion, what_has_stopped_faces_the_way_it_came) {
   way.onward.setZero();
   EXPECT_DOUBLE_EQ(way_direction(way, 20.0), 0.5 * std::numbers::pi);
   EXPECT_DOUBLE_EQ(way_direction(IntendedWay{}, 3.0), 0.0);
-  // And what waits at first the way that it will go.
+  // An obstacle that waits at first faces the way it will go.
   const IntendedWay late{.points = {{.time = 0.0}, {.time = 4.0}}, .onward = {0.0, -1.0}};
   EXPECT_DOUBLE_EQ(way_direction(late, 1.0), -0.5 * std::numbers::pi);
 }
@@ -54,7 +54,7 @@ TEST(ObstacleMotion, way_along_places_keeps_its_speed) {
   places << 1.0, 4.0, 4.0, 4.0,  //
       1.0, 1.0, 1.0, 5.0;
   const IntendedWay way = way_along(places, 2.0);
-  ASSERT_EQ(way.points.size(), 3U);  // a place that is named twice is one
+  ASSERT_EQ(way.points.size(), 3U);  // a place named twice counts once
   EXPECT_DOUBLE_EQ(way.points[1].time, 1.5);
   EXPECT_DOUBLE_EQ(way.points[2].time, 3.5);
   EXPECT_TRUE(intended_offset(way, 100.0).isApprox(Eigen::Vector2d(3.0, 4.0)));
@@ -79,7 +79,7 @@ TEST(ObstaclePoses, are_straight_between_two_and_turn_the_shorter_way) {
   EXPECT_EQ(poses_between(first, last, 0.0), first);
 }
 
-/// A motion that is taken, and what makes it one that is not.
+/// A valid motion, and the change that makes it invalid.
 struct Wrong {
   std::string name;
   std::string expected;

@@ -1,4 +1,4 @@
-// What is particular to the point mass: exact damped motion, and a Lipschitz constant that is
+// Properties specific to the point mass: exact damped motion, and a Lipschitz constant that is
 // attained.
 #include "models/dynamics/point_mass.hpp"
 
@@ -30,7 +30,7 @@ StateBatch moved(double damping, double time_step, int periods) {
   return state;
 }
 
-// Exact: whatever the period, the same motion under a held input.
+// Exact: under a held input the motion is the same for any period.
 TEST(PointMass, motion_does_not_depend_on_the_period) {
   for (const double damping : {0.0, 1e-6, 9e-4, 0.3, 3.0}) {
     const StateBatch once = moved(damping, 0.4, 1);

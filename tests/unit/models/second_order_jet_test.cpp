@@ -12,7 +12,7 @@ namespace second_order_jet_test {
 
 using Jet = SecondOrderJet<2>;
 
-// A few operations on values of the order of ten.
+// A few operations on values of order ten.
 constexpr double kRounding = 1e-13;
 constexpr double kX = 0.7;
 constexpr double kY = -1.3;

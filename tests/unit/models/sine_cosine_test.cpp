@@ -1,4 +1,4 @@
-// Sine and cosine of vectors against the standard library, on every instruction set.
+// Vectorised sine and cosine against the standard library, on every instruction set.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -44,7 +44,7 @@ namespace sine_cosine_test {
 
 using namespace testing;
 
-// Rounded results of the standard library's, which is within one unit of the truth itself.
+// Compared with the standard library's rounded results, which are within one unit of the truth.
 constexpr double kUnits = 2.0;
 
 struct Values {
@@ -58,7 +58,7 @@ Values values_of(const std::vector<double>& angles) {
   return values;
 }
 
-/// In units of the last place of the expected value.
+/// Difference in units of the last place of the expected value.
 double units_apart(double value, double expected) {
   const double unit = std::nextafter(std::abs(expected), 2.0) - std::abs(expected);
   return std::abs(value - expected) / unit;
@@ -76,7 +76,7 @@ std::vector<double> angles() {
     std::uniform_real_distribution<double> uniform(0.5 * scale, scale);
     for (int n = 0; n < 500; ++n) add(uniform(generator));
   }
-  // Where one of the two is nearly zero, and on both sides of the changes of quadrant.
+  // Where sine or cosine is nearly zero, and on both sides of the quadrant boundaries.
   for (int quarter = 1; quarter < 700000; quarter = quarter * 3 / 2 + 1) {
     const double edge = 0.25 * quarter * std::numbers::pi;
     add(edge);
@@ -119,7 +119,7 @@ TEST(SineCosine, is_exact_at_zero_and_nan_where_the_angle_is_not_finite) {
 }
 
 TEST(SineCosine, is_the_same_on_every_target_whatever_stands_beside_it) {
-  // An angle for the standard library must not change how those in its vector are computed.
+  // An angle that falls back to the standard library must not change the others in its vector.
   std::vector<double> mixed = angles();
   std::shuffle(mixed.begin(), mixed.end(), std::mt19937_64(3));
   const Values best = values_of(mixed);

@@ -1,4 +1,4 @@
-// The batch loops give the same bits on every instruction set, for whole vectors and for rests.
+// The batch loops give the same bits on every instruction set, for whole vectors and remainders.
 #include "tests/support/vector_targets.hpp"
 
 #include <memory>

@@ -14,8 +14,8 @@ namespace named_model_test {
 
 using ::testing::HasSubstr;
 
-// An axle without a shape of its own: its wheels are bodies that are fixed to it; a hub cap that is
-// only drawn, and a gear with a hinge of its own, are larger.
+// An axle without its own shape: its wheels are bodies fixed to it; a hub cap for display only and
+// a gear with its own hinge are larger.
 constexpr const char* kAxle = R"(<mujoco><worldbody><body>
   <freejoint/><geom size="1"/>
   <body name="axle"><joint name="axle" axis="0 1 0"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>

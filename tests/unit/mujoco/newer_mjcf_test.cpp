@@ -16,7 +16,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// What is put into a model of a body on a slide.
+/// What is inserted into a model of a body on a slide.
 struct Model {
   const char* option = "";
   const char* joint = "";

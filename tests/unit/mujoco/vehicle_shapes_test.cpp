@@ -34,7 +34,7 @@ std::string shipped(const std::string& mjcf) {
   return parse_scenario(text).plant.mjcf;
 }
 
-/// x, y, z; then the wheels' own joints at rest.
+/// x, y and heading; the wheels' own joints at rest.
 std::vector<double> car_at(const VehicleShapes& car, double x, double y, double heading) {
   std::vector<double> qpos(car.coordinate_count(), 0.0);
   const std::vector<double> root{
@@ -43,7 +43,7 @@ std::vector<double> car_at(const VehicleShapes& car, double x, double y, double 
   return qpos;
 }
 
-/// Where the shape is in the world.
+/// The shape's placement in the world.
 Placement in_world(const VehicleShape& shape, const std::vector<Placement>& parts) {
   if (shape.part < 0) return shape.place;
   const Placement& part = parts[static_cast<std::size_t>(shape.part)];
@@ -63,7 +63,7 @@ TEST(VehicleShapes, of_a_car_are_where_its_coordinates_say) {
   // A body and four wheels.
   ASSERT_EQ(car.part_count(), 5U);
   const auto parts = car.parts(car_at(car, 3.0, 4.0, 0.5 * std::numbers::pi));
-  // Heading along y: the front axle is 0.3 m on, the left wheels 0.11 m to smaller x.
+  // Heading along y: the front axle is 0.3 m ahead, the left wheels 0.11 m towards smaller x.
   std::vector<Eigen::Vector3d> expected{
       {2.89, 4.0, 0.06}, {3.11, 4.0, 0.06}, {2.89, 4.3, 0.06}, {3.11, 4.3, 0.06}};
   int tyres = 0;
@@ -75,7 +75,7 @@ TEST(VehicleShapes, of_a_car_are_where_its_coordinates_say) {
       return (wheel - place.position).norm() < kRounding;
     });
     EXPECT_TRUE(known) << place.position.transpose();
-    // Their axis, which is z of a cylinder, points across the vehicle.
+    // Their axis, the z axis of a cylinder, points across the vehicle.
     EXPECT_NEAR(std::abs((place.rotation * Eigen::Vector3d::UnitZ()).x()), 1.0, kRounding);
   }
   EXPECT_EQ(tyres, 4);
@@ -84,11 +84,11 @@ TEST(VehicleShapes, of_a_car_are_where_its_coordinates_say) {
 TEST(VehicleShapes, are_visible_ones_in_the_colours_of_the_file) {
   const VehicleShapes car(shipped("dubins_car.xml"));
   for (const VehicleShape& shape : car.shapes()) {
-    // The wheels that touch the ground are hidden ellipsoids; the chassis' box is hidden as well.
+    // The ellipsoids that touch the ground are hidden, and so is the chassis box.
     EXPECT_FALSE(shape.kind == ShapeKind::kEllipsoid && shape.size[0] > 0.05);
     EXPECT_FALSE(shape.kind == ShapeKind::kBox && std::abs(shape.size[1] - 0.09) < kRounding);
   }
-  // MuJoCo has colours in single precision.
+  // MuJoCo stores colours in single precision.
   const std::array<double, 4> paint{static_cast<double>(0.95F), static_cast<double>(0.42F),
                                     static_cast<double>(0.08F), 1.0};
   const std::vector<VehicleShape> hull = of_kind(car, ShapeKind::kMesh);

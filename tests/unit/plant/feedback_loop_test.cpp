@@ -1,4 +1,4 @@
-// Vehicles that bring forces and torques only, held at their speeds by loops of the mapping.
+// Vehicles driven by forces and torques, held at their speeds by feedback loops of the mapping.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -31,7 +31,7 @@ struct Vehicle {
   std::string yaw_rate;  ///< actuator
 };
 
-/// Drives along −y of its body, its wheels turned by torques.
+/// Drives along −y of its body, with torque-driven wheels.
 const Vehicle kRobot{.mjcf = "torque_robot.xml",
                      .heading = "{body: base, quantity: yaw, offset: -1.5707963267948966}",
                      .speed = "{body: base, quantity: lateral_speed, gain: -1}",
@@ -48,7 +48,7 @@ std::string body_of(const Vehicle& vehicle) {
   return vehicle.mjcf == kRobot.mjcf ? "base" : "agent";
 }
 
-/// The Dubins car at 0.6 m/s on `vehicle`; `more` of its speed's loop.
+/// The Dubins car at 0.6 m/s on `vehicle`; `more`: further keys of its speed loop.
 Scenario scenario_of(const Vehicle& vehicle, const std::string& more = "",
                      const std::string& goal = "{parameter: speed}") {
   const std::string body = body_of(vehicle);
@@ -73,7 +73,7 @@ TEST(FeedbackLoop, holds_the_speed_and_follows_a_yaw_rate_with_the_lag_of_its_ti
   const auto plant = make_plant(scenario);
   plant->reset(pose(1.0, 2.0, 0.5));
   const PlantStep straight = plant->advance(yaw_rate(0.0), no_disturbance());
-  // Wheels slip a little; the loop holds what it measures.
+  // Wheels slip slightly; the loop holds the measured speed.
   const Eigen::Vector3d expected(1.0 + kGoal * 0.1 * std::cos(0.5),
                                  2.0 + kGoal * 0.1 * std::sin(0.5), 0.5);
   EXPECT_LT((straight.state - expected).cwiseAbs().maxCoeff(), 2e-3);
@@ -84,7 +84,7 @@ TEST(FeedbackLoop, holds_the_speed_and_follows_a_yaw_rate_with_the_lag_of_its_ti
     const PlantStep step = plant->advance(yaw_rate(kTurn), no_disturbance());
     ASSERT_FALSE(step.fault.has_value()) << *step.fault;
     turned = step.state[2] - state[2];
-    if (k == 0) {  // after a lag of 0.1 s, 1/e of a period's turn
+    if (k == 0) {  // after a lag of 0.1 s, 1/e of one period's turn
       EXPECT_LT(turned, 0.7 * kTurn * 0.1);
     }
     EXPECT_LT(turned, 1.05 * kTurn * 0.1);
@@ -111,7 +111,7 @@ TEST(FeedbackLoop, answers_as_the_model_without_a_gain_being_given) {
 }
 
 TEST(FeedbackLoop, the_doctor_measures_a_response_that_was_given_wrong) {
-  // Fifty times the true one at least: the loop is too weak to follow.
+  // At least fifty times the true value: the loop is too weak to follow.
   Scenario scenario = scenario_of(kRobot);
   std::get<FeedbackLoop>(scenario.plant.mapping->loops[1]).response = 2000.0;
   const PlantAnswers answers = plant_answers(scenario);
@@ -121,8 +121,8 @@ TEST(FeedbackLoop, the_doctor_measures_a_response_that_was_given_wrong) {
   EXPECT_THAT(answer_warnings(scenario, search.answers), IsEmpty());
 }
 
-// Its heading turns at once, its motion goes on along the old one: no loop of the forward speed can
-// mend that, and the doctor has to say so.
+// Its heading turns at once while it keeps moving in the old direction: no loop of the forward
+// speed can fix that, and the doctor has to report it.
 TEST(FeedbackLoop, a_body_that_slides_sideways_is_warned_of) {
   EXPECT_THAT(plant_warnings(scenario_of(kPusher)), Contains(HasSubstr("changes x by")));
 }
@@ -153,7 +153,7 @@ TEST(FeedbackLoop, refuses_what_it_cannot_hold) {
   EXPECT_THAT(refusal("", "{}").expected, HasSubstr("parameter"));
   EXPECT_EQ(refusal(", time_constant: 0").key, "plant.loops.0.time_constant");
   EXPECT_EQ(refusal(", response: 0").key, "plant.loops.0.response");
-  // More than the propeller can bring against the friction.
+  // More than the propeller can achieve against friction.
   EXPECT_THAT(refusal("", "{gain: 600}").expected, HasSubstr("a longer `settling`"));
   Vehicle sideways = kPusher;
   sideways.speed = "{body: agent, quantity: lateral_speed}";

@@ -1,4 +1,4 @@
-// Plants in MuJoCo's own joints follow the equations of their systems, with the integrator's order.
+// Plants in MuJoCo's own joints follow their systems' equations, with the integrator's order.
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -24,9 +24,9 @@ struct JointPlant {
   std::vector<double> input_scale;  // of random inputs
   double coarse_step;               // s
   int order;                        // of convergence
-  /// The system whose steps, made small, are the same equations in continuous time.
+  /// The system whose small steps approximate the same continuous-time equations.
   std::string reference_system;
-  models::ParameterMap parameters{};  // of that system, besides the defaults
+  models::ParameterMap parameters{};  // of that system, in addition to the defaults
 };
 
 std::ostream& operator<<(std::ostream& out, const JointPlant& plant) { return out << plant.mjcf; }
@@ -44,7 +44,7 @@ Eigen::VectorXd input_of(const JointPlant& plant, int period) {
                             Eigen::VectorXd::Ones(scale.size()));
 }
 
-/// The states at the ends of the periods, by small steps of the analytic system.
+/// The states at the ends of the periods, from small steps of the analytic system.
 std::vector<Eigen::VectorXd> analytic_states(const JointPlant& plant, int steps_per_period) {
   const auto model =
       models::make_dynamics(plant.reference_system, plant.parameters, kPeriod / steps_per_period);
@@ -62,7 +62,7 @@ std::vector<Eigen::VectorXd> analytic_states(const JointPlant& plant, int steps_
   return states;
 }
 
-/// The largest deviation from `truth` over the periods and states.
+/// The largest deviation from `truth` over periods and states.
 double setup_error(const JointPlant& plant, const MujocoPlantSetup& setup,
                    const std::vector<Eigen::VectorXd>& truth) {
   const auto vehicle = make_mujoco_plant(setup);
@@ -78,7 +78,7 @@ double setup_error(const JointPlant& plant, const MujocoPlantSetup& setup,
   return error;
 }
 
-/// The same of the shipped file.
+/// The same for the shipped file.
 double plant_error(const JointPlant& plant, double time_step,
                    const std::vector<Eigen::VectorXd>& truth) {
   MujocoPlantSetup setup = shipped_setup(plant.system, plant.mjcf, kPeriod);
@@ -90,7 +90,8 @@ class JointPlants : public ::testing::TestWithParam<JointPlant> {};
 
 TEST_P(JointPlants, converge_to_their_systems_with_the_integrators_order) {
   const JointPlant& plant = GetParam();
-  // The reference is of first order at worst; two step sizes extrapolate that away.
+  // The reference is of first order at worst; Richardson extrapolation over two step sizes removes
+  // that.
   constexpr int kFine = 4000;
   const std::vector<Eigen::VectorXd> coarse = analytic_states(plant, kFine);
   std::vector<Eigen::VectorXd> truth = analytic_states(plant, 2 * kFine);
@@ -129,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(all, JointPlants,
                                                       .reference_system = "cart_pole"}),
                          [](const auto& test) { return test.param.system; });
 
-// A file of another project's, whose joints are damped.
+// A third-party file whose joints are damped.
 TEST(JointPlants, a_damped_cart_pole_answers_as_the_damped_system) {
   std::ostringstream stream;
   stream << std::ifstream(QSMPC_SOURCE_DIR "/models/mjcf/cart_pole.xml").rdbuf();
@@ -151,7 +152,7 @@ TEST(JointPlants, a_damped_cart_pole_answers_as_the_damped_system) {
   MujocoPlantSetup setup = shipped_setup(plant.system, "cart_pole.xml", kPeriod);
   setup.mjcf = plant.mjcf;
   setup.time_step = plant.coarse_step;
-  // Runge-Kutta of fourth order with steps of 0.01 s, over 2 s.
+  // Fourth-order Runge-Kutta with steps of 0.01 s, over 2 s.
   EXPECT_LT(setup_error(plant, setup, analytic_states(plant, 1000)), 1e-4);
   plant.parameters = {};
   EXPECT_GT(setup_error(plant, setup, analytic_states(plant, 1000)), 0.5);

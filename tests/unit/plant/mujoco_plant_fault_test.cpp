@@ -1,4 +1,4 @@
-// Faults of the simulator, and models that are refused.
+// Simulator faults, and models that are refused.
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -34,7 +34,7 @@ InputError::Where refusal(const std::string& mjcf, double control_period = kCont
   return {};
 }
 
-/// Runs in a folder of its own, where MuJoCo would leave its log.
+/// Runs in its own folder, where MuJoCo would write its log.
 class MujocoPlantFault : public ::testing::Test {
  protected:
   MujocoPlantFault() { std::filesystem::current_path(folder_.path()); }
@@ -77,7 +77,7 @@ using MujocoPlantFaultDeathTest = MujocoPlantFault;
 TEST_F(MujocoPlantFaultDeathTest, a_period_ends_where_the_process_is_asked_to_stop) {
   const auto car = make_car();
   car->reset(pose(0.0, 0.0, 0.0));
-  // In a process of its own: others have not been asked.
+  // In its own process: others have not received the request.
   EXPECT_EXIT(
       {
         note_interrupt();
@@ -116,8 +116,7 @@ TEST_F(MujocoPlantFault, lasts_until_reset_and_is_then_forgotten) {
 }
 
 TEST_F(MujocoPlantFault, a_simulation_that_explodes_stops_at_its_last_good_state) {
-  // A torque without a bound, in place of the servo: nothing while driving straight, then
-  // everything.
+  // An unbounded torque instead of the servo: zero while driving straight, then excessive.
   const std::string text = altered_car(
       "<position class=\"steering\" name=\"steer_left\" joint=\"front_left_steering\"/>",
       "<motor name=\"steer_left\" joint=\"front_left_steering\" gear=\"1e13\"/>");
@@ -128,7 +127,7 @@ TEST_F(MujocoPlantFault, a_simulation_that_explodes_stops_at_its_last_good_state
   const PlantStep step = car->advance(yaw_rate(1.0), no_disturbance());
   ASSERT_TRUE(step.fault.has_value());
   EXPECT_THAT(*step.fault, AllOf(HasSubstr("The simulation is unstable"), HasSubstr(" at 0.1")));
-  // A silent reset would be at the origin.
+  // After a silent reset the car would be at the origin.
   EXPECT_NEAR(step.state[0], 0.15, 0.05);
   EXPECT_TRUE(step.state.allFinite());
   for (const MotionSample& sample : step.motion) EXPECT_LT(std::abs(sample.qpos[0]), 1.0);
@@ -144,7 +143,7 @@ TEST_F(MujocoPlantFault, a_kick_out_of_the_simulators_range) {
 }
 
 TEST_F(MujocoPlantFault, refuses_a_model_whose_buffers_are_too_small) {
-  // Four wheels touch and there is room for three: refused at settling.
+  // Four wheels touch but there is room for three contacts: refused at settling.
   const auto where =
       refusal(folder_.file("car.xml", altered_car("nconmax=\"50\"", "nconmax=\"3\"")));
   EXPECT_THAT(where.found, HasSubstr("contact"));

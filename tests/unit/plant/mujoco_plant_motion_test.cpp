@@ -1,4 +1,4 @@
-// The car against the Dubins model, and what a kick does to it.
+// The car compared with the Dubins model, and the effect of a kick.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -33,7 +33,7 @@ TEST(MujocoPlantMotion, drives_straight_as_the_model_does) {
     expected = next;
     const PlantStep step = car->advance(yaw_rate(0.0), no_disturbance());
     ASSERT_FALSE(step.fault.has_value()) << *step.fault;
-    // No transient at the start and a calibrated speed: only the solver's tolerance is left.
+    // No initial transient and a calibrated speed: only the solver's tolerance is left.
     EXPECT_LT((step.state - expected.col(0)).cwiseAbs().maxCoeff(), 1e-4) << "period " << k;
   }
 }
@@ -84,9 +84,9 @@ TEST(MujocoPlantMotion, residual_of_one_step_is_small_under_random_inputs) {
   RecordProperty("rmse_along_m", std::to_string(rmse[0]));
   RecordProperty("rmse_across_m", std::to_string(rmse[1]));
   RecordProperty("rmse_heading_rad", std::to_string(rmse[2]));
-  // Inputs that jump by up to 4 rad/s each period are the worst there are: the front tyres need
-  // some 50 ms for a jump, at most friction times their load. Measured 0.6 mm, 5.7 mm (the curve
-  // that the model's Euler step leaves out), 0.034 rad; half as much again is allowed.
+  // Inputs that jump by up to 4 rad/s each period are the worst case: the front tyres need about 50
+  // ms for a jump, at most friction times their load. Measured: 0.6 mm, 5.7 mm (the curvature that
+  // the model's Euler step omits), 0.034 rad; the limits are half as much again.
   EXPECT_LT(rmse[0], 0.0009);
   EXPECT_LT(rmse[1], 0.0086);
   EXPECT_LT(rmse[2], 0.051);
@@ -102,8 +102,8 @@ TEST(MujocoPlantMotion, stays_upright_on_its_wheels_for_a_minute_of_random_input
     const PlantStep step = car->advance(yaw_rate(random_yaw_rate(2, k)), kick);
     ASSERT_FALSE(step.fault.has_value()) << *step.fault;
     for (const MotionSample& sample : step.motion) {
-      // The axle is at 0.06 m; the suspension's range is ±0.012 m. qpos[4] and qpos[5] are the
-      // sines of half the tilt.
+      // The axle is at 0.06 m; the suspension travel is ±0.012 m. qpos[4] and qpos[5] are the sines
+      // of half the tilt.
       ASSERT_NEAR(sample.qpos[2], 0.06, 0.012) << "at " << sample.time << " s";
       ASSERT_LT(std::hypot(sample.qpos[4], sample.qpos[5]), 0.1) << "at " << sample.time << " s";
     }
@@ -131,11 +131,11 @@ TEST(MujocoPlantMotion, a_kick_has_the_covariance_that_was_asked_for) {
     sum += jump * jump.transpose();
   }
   const Eigen::Matrix3d found = sum / kPeriods;
-  // A sample variance of n normal numbers has the relative deviation sqrt(2/n): 99 % limits.
+  // The sample variance of n normal numbers has relative deviation sqrt(2/n): 99 % limits.
   const double limit = 2.576 * std::sqrt(2.0 / kPeriods);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(found(i, i) / covariance(i, i), 1.0, limit);
   const double correlation = found(0, 1) / std::sqrt(found(0, 0) * found(1, 1));
-  // The correlation asked for is 0.8; that of a sample deviates by (1 − 0.8²)/sqrt(n).
+  // The specified correlation is 0.8; a sample correlation has deviation (1 − 0.8²)/sqrt(n).
   EXPECT_NEAR(correlation, 0.8, 2.576 * 0.36 / std::sqrt(kPeriods));
 }
 
@@ -157,8 +157,8 @@ TEST(MujocoPlantMotion, a_kicked_car_moves_on_as_it_would_have_from_there) {
     kicked->advance(yaw_rate(rate), no_disturbance());
     const Eigen::Vector3d moved_straight = straight->state() - from_straight;
     const Eigen::Vector3d moved_kicked = kicked->state() - from_kicked;
-    // The ground is the same everywhere and in every direction, but for the tolerance of the
-    // contact solver, which a kick that leaves velocities behind exceeds by orders of magnitude.
+    // The ground is homogeneous and isotropic up to the contact solver's tolerance, which a kick
+    // that leaves velocities behind exceeds by orders of magnitude.
     EXPECT_LT((turned(moved_straight, 2.5) - moved_kicked).norm(), 1e-5) << "period " << k;
   }
 }
@@ -173,7 +173,7 @@ TEST(MujocoPlantMotion, heading_counts_turns) {
     EXPECT_NEAR(step.state[2] - previous, -0.2, 0.15) << "period " << k;
     previous = step.state[2];
   }
-  // 13 s at −2 rad/s, late by the 40 ms that the tyres take at first.
+  // 13 s at −2 rad/s, late by the tyres' initial 40 ms.
   EXPECT_NEAR(previous, 3.0 * kTurn + 1.0 - 26.0, 0.2);
 }
 

@@ -1,5 +1,5 @@
-// What the disturbances do to each plant that offers them, period by period, beside an undisturbed
-// twin.
+// The effect of disturbances on each plant that offers them, period by period, compared with an
+// undisturbed twin.
 #include <cmath>
 #include <ostream>
 #include <string>
@@ -15,8 +15,8 @@
 namespace qsmpc::harness {
 namespace plant_disturbance_test {
 
-/// Periods driven: a disturbance by force shoots for its effect, several simulations a period. The
-/// limits below follow the number.
+/// Number of periods: a disturbance by force is found by shooting, with several simulations per
+/// period. The limits below depend on this number.
 int periods_of(bool force) {
   return force ? testing::by_effort(100, 300, 2000) : testing::by_effort(500, 1500, 2000);
 }
@@ -37,7 +37,7 @@ Eigen::VectorXd vector_of(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// A covariance with these variances and a correlation of 0.3 of the first two states.
+/// A covariance with these variances and a correlation of 0.3 between the first two states.
 Eigen::MatrixXd covariance_of(const Disturbed& plant) {
   Eigen::MatrixXd covariance = vector_of(plant.variances).asDiagonal();
   constexpr double kCorrelation = 0.3;
@@ -83,7 +83,7 @@ TEST_P(PlantDisturbance, has_the_planned_covariance) {
     squares += effect * effect.transpose();
     misses += (effect - planned).cwiseAbs2();
   }
-  // All entries of mean and covariance are within their limits with 99 % together (Bonferroni).
+  // All entries of mean and covariance are jointly within their limits with 99 % (Bonferroni).
   const double entries = static_cast<double>(dim * (dim + 3)) / 2.0;
   const double limit = boost::math::quantile(boost::math::normal(), 1.0 - 0.01 / (2.0 * entries));
   const Eigen::VectorXd mean = sum / periods;

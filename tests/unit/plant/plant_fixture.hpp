@@ -1,4 +1,4 @@
-// What the tests of plants share: the shipped car, altered copies of it, and its numbers.
+// Shared by the tests of plants: the shipped car, altered copies of it, and its numbers.
 #pragma once
 
 #include <fstream>
@@ -47,7 +47,7 @@ inline Eigen::Vector3d turned(const Eigen::Vector3d& vector, double angle) {
           std::sin(angle) * vector.x() + std::cos(angle) * vector.y(), vector.z()};
 }
 
-/// The shipped car's XML with every `from` replaced by `to`; throws unless there is one.
+/// The shipped car's XML with every `from` replaced by `to`; throws if there is none.
 inline std::string altered_car(const std::string& from, const std::string& to) {
   std::ostringstream stream;
   stream << std::ifstream(kCarFile).rdbuf();

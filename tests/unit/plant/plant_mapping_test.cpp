@@ -19,7 +19,7 @@ namespace plant_mapping_test {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// A mass on a rail with sensors, driven in other units: the joint counts cm, the motor mN.
+// A mass on a rail with sensors, in other units: the joint in cm, the motor in mN.
 constexpr const char* kRail = R"(<mujoco>
   <option timestep="0.01" integrator="RK4" gravity="0 0 0"><flag contact="disable"/></option>
   <worldbody>
@@ -35,7 +35,7 @@ constexpr const char* kRail = R"(<mujoco>
 </mujoco>
 )";
 
-/// A double integrator on the rail; `plant` replaces the mapping where it is not empty.
+/// A double integrator on the rail; `plant` replaces the mapping unless it is empty.
 Scenario rail_scenario(const std::string& file, const std::string& plant = "") {
   const std::string mapping = plant.empty()
                                   ? "state: {position: {joint: slide, gain: 100, offset: 5}, "
@@ -69,7 +69,7 @@ TEST_F(PlantMappingTest, gain_and_offset_turn_units_both_ways) {
   const auto plant = make_plant(rail_scenario(file_));
   const MotionSample start = plant->reset(Eigen::Vector2d(25.0, 30.0));
   EXPECT_NEAR(start.qpos[0], 0.2, 1e-15);  // (25 - 5)/100
-  // 50 cm/s² for 0.1 s: 0.02 N for each, on 2 kg.
+  // 50 cm/s² for 0.1 s: 0.02 N each, on 2 kg.
   const PlantStep step =
       plant->advance(Eigen::VectorXd::Constant(1, 50.0), Eigen::Vector2d::Zero());
   EXPECT_NEAR(step.state[0], 25.0 + 3.0 + 0.25, 1e-12);
@@ -158,7 +158,7 @@ TEST_F(PlantMappingTest, an_input_acts_after_its_delay) {
 }
 
 TEST_F(PlantMappingTest, a_control_moves_no_faster_than_its_rate) {
-  // The motor's control climbs from 0 to 2 at 40 /s: an impulse short of that of the step by
+  // The motor's control rises from 0 to 2 at 40 /s: the impulse is less than that of a step by
   // 2 · 0.05/2 N s.
   const auto plant = make_plant(rail_scenario(
       file_,
@@ -208,7 +208,7 @@ TEST(PlantVariation, changes_what_a_car_does_with_its_steering) {
   const Eigen::Vector2d input(0.0, 0.05);
   for (const char* mjcf : {"bicycle_planar.xml", "bicycle_car.xml"}) {
     const double turned = turned_after_a_second({}, "bicycle", mjcf, start, input);
-    // Longer, heavier and on softer tyres it turns less: it understeers.
+    // Longer, heavier or on softer tyres, it turns less: it understeers.
     EXPECT_LT(turned_after_a_second({.wheelbase = 1.2}, "bicycle", mjcf, start, input),
               0.95 * turned)
         << mjcf;
@@ -218,7 +218,7 @@ TEST(PlantVariation, changes_what_a_car_does_with_its_steering) {
               0.999 * turned)
         << mjcf;
   }
-  // The small car's steering knows its wheelbase, and so does the varied car's.
+  // The small car's steering uses its wheelbase, and the varied car's does as well.
   const Eigen::VectorXd rate = yaw_rate(1.0);
   const double turned =
       turned_after_a_second({}, "dubins", "dubins_car.xml", pose(0.0, 0.0, 0.0), rate);

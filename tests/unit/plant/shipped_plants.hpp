@@ -1,4 +1,4 @@
-// The shipped MuJoCo plants as the tests make them.
+// The shipped MuJoCo plants as the tests use them.
 #pragma once
 
 #include <memory>

@@ -26,7 +26,7 @@
 namespace qsmpc::harness {
 namespace solid_plant_test {
 
-/// A vehicle, and how it is driven straight on.
+/// A vehicle, and how it is driven straight ahead.
 struct DrivenVehicle {
   std::string name;
   std::string system;
@@ -66,7 +66,7 @@ class SolidVehicle : public ::testing::TestWithParam<DrivenVehicle> {
     }
   }
 
-  /// Drives on for 3 s, at `start_`, over the map.
+  /// Drives for 3 s from `start_` over the map.
   std::vector<PlantStep> drive(const controller::SafeSet& map) {
     setup_.solid = map;
     const auto plant = make_mujoco_plant(setup_);
@@ -84,11 +84,11 @@ class SolidVehicle : public ::testing::TestWithParam<DrivenVehicle> {
   Eigen::VectorXd start_;
   Eigen::VectorXd input_;
   Eigen::VectorXd disturbance_;
-  double front_ = 0.0;  // m, how far the footprint reaches ahead
+  double front_ = 0.0;  // m, how far the footprint extends ahead
 };
 
-// The footprint reaches the block before the vehicle does, by no more than it goes beyond it: at
-// most 15 % of the width, and by what the discs' radius adds ahead.
+// The footprint reaches the block before the vehicle does, by at most its excess: 15 % of the
+// width, plus the discs' radius ahead.
 TEST_P(SolidVehicle, touches_a_block_soon_after_its_footprint_does) {
   const double block = front_ + 1.0;
   const auto steps = drive(map_with(dim_, {{block, block + 1.0, -2.0, 2.0}}));
@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
                       DrivenVehicle{"bicycle_planar", "bicycle", "bicycle_planar.xml", 5.0, true}),
     [](const auto& tested) { return tested.param.name; });
 
-/// A shape whose surface is met at (`ahead`, 0), or less than 1 cm from there, along the x axis.
+/// A shape whose surface is at (`ahead`, 0), or within 1 cm of it, along the x axis.
 struct MetShape {
   std::string name;
   controller::PlanarShape (*at)(double ahead);
@@ -182,7 +182,7 @@ controller::PlanarShape half_plane_at(double ahead) {
   return controller::HalfPlaneShape{.normal = {2.0, 0.2}, .offset = 2.0 * ahead};
 }
 
-/// An L into whose inner corner the car drives.
+/// An L-shaped polygon; the car drives into its inner corner.
 controller::PlanarShape corner_at(double ahead) {
   Eigen::Matrix2Xd corners(2, 6);
   corners << -1.0, 1.0, 1.0, 0.0, 0.0, -1.0,  //
@@ -200,8 +200,8 @@ controller::PlanarShape triangle_at(double ahead) {
 
 class SolidShape : public ::testing::TestWithParam<MetShape> {
  protected:
-  /// Where the car was when it first touched the obstacle, and the least clearance of its footprint
-  /// in 3 s.
+  /// The car's state at first contact with the obstacle, and the smallest clearance of its
+  /// footprint within 3 s.
   struct Meeting {
     Eigen::VectorXd state;
     double least = kInfinity;
@@ -219,7 +219,7 @@ class SolidShape : public ::testing::TestWithParam<MetShape> {
     return map;
   }
 
-  /// Drives straight on from the origin.
+  /// Drives straight ahead from the origin.
   Meeting meet(const controller::Obstacle& obstacle) {
     Meeting meeting;
     setup_.solid = map_of(obstacle);
@@ -244,7 +244,7 @@ class SolidShape : public ::testing::TestWithParam<MetShape> {
   MujocoPlantSetup setup_ = car_setup();
 };
 
-// The discs of the footprint, which lie over the hull, reach 0.086 m beyond its nose.
+// The footprint's discs, which cover the hull, extend 0.086 m beyond its nose.
 TEST_P(SolidShape, stops_a_car_where_a_block_would) {
   constexpr double kAhead = 1.6;  // m
   const Meeting block = meet(map_with(3, {{kAhead, kAhead + 1.0, -2.0, 2.0}}).obstacles[0]);
@@ -255,7 +255,7 @@ TEST_P(SolidShape, stops_a_car_where_a_block_would) {
   const double clearance = controller::clearance(met.state, map_of(shape));
   EXPECT_LT(clearance, 0.0);
   EXPECT_GT(clearance, -0.1);
-  EXPECT_NEAR(met.state[0], block.state[0], 0.02);  // the shapes' faces are not all across
+  EXPECT_NEAR(met.state[0], block.state[0], 0.02);  // not all faces are perpendicular to the path
   EXPECT_GT(met.least, -0.2) << "it drives through";
 }
 
@@ -277,7 +277,7 @@ INSTANTIATE_TEST_SUITE_P(
                       MetShape{"corner", corner_at}, MetShape{"triangle", triangle_at}),
     [](const auto& tested) { return tested.param.name; });
 
-// A disc that moves onto a car that stands pushes it on, and one that turns past it does not.
+// A disc that moves onto a standing car pushes it along; one that passes beside it does not.
 TEST(SolidPlant, moves_what_moves) {
   MujocoPlantSetup setup = car_setup();
   controller::SafeSet map = controller::unbounded_safe_set(3);
@@ -300,13 +300,13 @@ TEST(SolidPlant, moves_what_moves) {
   };
   EXPECT_EQ(pushed({0.0, 0.0, 0.0}), 0.0);
   EXPECT_GT(pushed({0.6, -2.2, 0.0}), 0.0);
-  // Across, it is too far away.
+  // Sideways, it is too far away.
   EXPECT_EQ(pushed({0.6, -1.7, 0.5 * std::numbers::pi}), 0.0);
   EXPECT_GT(pushed({0.6, -1.9, 0.0}), 0.0);
 }
 
 TEST(SolidPlant, has_a_prism_for_each_convex_part_where_the_coordinates_are_large) {
-  constexpr double kEast = 500'000.0;  // m, as in maps of the surveyor
+  constexpr double kEast = 500'000.0;  // m, as in surveyors' maps
   controller::SafeSet map = controller::unbounded_safe_set(3);
   map.body = {.discs = {}, .x = 0, .y = 1};
   map.obstacles.emplace_back(corner_at(kEast));
@@ -314,7 +314,7 @@ TEST(SolidPlant, has_a_prism_for_each_convex_part_where_the_coordinates_are_larg
   const MujocoModelPtr model = load_with_solids(kCarFile, map, car_setup().system);
   ASSERT_EQ(model->ngeom, plain->ngeom + 2);
   ASSERT_EQ(model->nmesh, plain->nmesh + 2);
-  // Where the corners of both are: mesh, geom and what MuJoCo has turned and moved the mesh by.
+  // The corners of both parts: mesh, geom, and MuJoCo's rotation and translation of the mesh.
   Eigen::Vector2d lowest = Eigen::Vector2d::Constant(1e9);
   Eigen::Vector2d highest = -lowest;
   for (int geom = 0; geom < model->ngeom; ++geom) {
@@ -404,12 +404,12 @@ TEST(PlantSteps, have_the_states_at_the_simulators_steps) {
   const auto car = make_car();
   car->reset(pose(0.0, 0.0, 0.0));
   const PlantStep step = car->advance(yaw_rate(0.5), pose(0.25, 0.0, 0.0));
-  ASSERT_EQ(step.between.cols(), 50);  // of 2 ms
+  ASSERT_EQ(step.between.cols(), 50);  // of 2 ms each
   ASSERT_EQ(step.between.rows(), 3);
   for (Eigen::Index k = 1; k < 50; ++k) {
     EXPECT_NEAR(step.between(0, k) - step.between(0, k - 1), 0.003, 0.0003);
   }
-  // The last is the period's end, before the disturbance.
+  // The last one is the end of the period, before the disturbance.
   EXPECT_NEAR(step.state[0] - step.between(0, 49), 0.25, 1e-6);
 }
 

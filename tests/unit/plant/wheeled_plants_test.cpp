@@ -1,4 +1,4 @@
-// The cars on wheels: stable over their whole range, and on tyres as stiff as they should be.
+// The wheeled cars: stable over their whole range, with tyres of the specified stiffness.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -27,7 +27,7 @@ double uniform(std::uint64_t seed, int period, Eigen::Index which, double lower,
   return lower + (upper - lower) * values[which];
 }
 
-/// How far from upright on its springs a free body is: the cosine of its tilt.
+/// How upright a sprung free body is: the cosine of its tilt.
 double uprightness(const MotionSample& sample) {
   const Eigen::Quaterniond rotation(sample.qpos[3], sample.qpos[4], sample.qpos[5], sample.qpos[6]);
   return (rotation * Eigen::Vector3d::UnitZ()).z();
@@ -70,7 +70,7 @@ double kinetic_energy(const models::ParameterMap& constants, const Eigen::Vector
          0.5 * constants.at("yaw_inertia") * yaw_rate * yaw_rate;
 }
 
-/// Parameters: as above. The acceleration is random about what holds the speed.
+/// Parameters: as above. The acceleration is random about the value that holds the speed.
 class FullSizeCar : public ::testing::TestWithParam<std::tuple<double, double>> {};
 
 TEST_P(FullSizeCar, is_stable_for_a_minute_of_random_inputs) {
@@ -93,7 +93,7 @@ TEST_P(FullSizeCar, is_stable_for_a_minute_of_random_inputs) {
       ASSERT_GT(uprightness(sample), 0.97) << sample.time;
       ASSERT_NEAR(sample.qpos[2], start.qpos[2], 0.12) << sample.time;
     }
-    // Full lock at speed makes it slide and spin; what it must not do is gain energy.
+    // At speed, full lock makes it slide and spin; it must not gain energy.
     const double most = 0.5 * setup.parameters.at("mass") * (speed + 1.5) * (speed + 1.5);
     ASSERT_LT(kinetic_energy(setup.parameters, step.state), most) << k;
   }
@@ -103,8 +103,8 @@ INSTANTIATE_TEST_SUITE_P(all, FullSizeCar,
                          ::testing::Combine(::testing::Values(0.0005, 0.001, 0.002),
                                             ::testing::Values(1.0, 3.0, 8.0, 15.0)));
 
-/// The stiffnesses of both axles, N/rad, that explain steady cornering at small slip: with both
-/// derivatives zero, l_f F_f = l_r F_r and F_f + F_r = m v ω, and slip angles from the speeds.
+/// The stiffnesses of both axles, N/rad, from steady cornering at small slip: with both derivatives
+/// zero, l_f F_f = l_r F_r and F_f + F_r = m v ω, and slip angles from the speeds.
 Eigen::Vector2d identified_stiffnesses(double speed, double steering) {
   MujocoPlantSetup setup = shipped_setup("bicycle", "bicycle_car.xml");
   const auto car = make_mujoco_plant(setup);
@@ -155,7 +155,7 @@ TEST(FullSizeCar, gains_the_acceleration_that_is_asked_for) {
   EXPECT_NEAR(gained, kPeriod, 0.002 * kPeriod);
 }
 
-/// Shipped car: system, file, state that it starts from, variances of the noise.
+/// Shipped car: system, file, initial state, noise variances.
 struct PushedCar {
   std::string system;
   std::string mjcf;
@@ -168,7 +168,7 @@ std::ostream& operator<<(std::ostream& out, const PushedCar& car) { return out <
 
 class PushedCars : public ::testing::TestWithParam<PushedCar> {};
 
-// A vehicle that turned over, or slid off sideways, would not move on by its speed in the next
+// A vehicle that had turned over or slid sideways would not advance by its speed in the next
 // period.
 TEST_P(PushedCars, drive_on_upright_under_forces_of_several_times_their_weight) {
   const PushedCar& tested = GetParam();

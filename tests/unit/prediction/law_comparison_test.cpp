@@ -1,4 +1,4 @@
-// Methods of prediction against simulated paths.
+// Prediction methods compared with simulated paths.
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -26,7 +26,7 @@ PredictionReport compared(const std::vector<std::string>& methods, std::int64_t 
                            .methods = methods});
 }
 
-/// Linear in the states: no spread of the heading, and no noise of it.
+/// Linear in the states: no spread of the heading and no noise on it.
 const std::vector<std::string>& straight() {
   static const std::vector<std::string> overrides = {
       "controller.policy=open_loop", "initial_state.covariance=[0.01, 0.01, 0]",
@@ -48,7 +48,7 @@ TEST(CompareLaws, right_laws_have_errors_of_the_size_of_the_sampling) {
     for (std::size_t k = 0; k < 4; ++k) {
       const LawErrors& errors = method.stages[k];
       const LawFloor& floor = report.laws->floors[k];
-      // Four times a root mean square; W2 between samples of 1000 varies by less than half.
+      // Four root mean squares; W2 between samples of 1000 varies by less than half.
       EXPECT_LE(errors.mean, 4.0 * floor.mean) << method.name;
       EXPECT_LE(errors.covariance, 4.0 * floor.covariance) << method.name;
       EXPECT_LE(errors.w2, 1.5 * floor.w2) << method.name;
@@ -63,7 +63,7 @@ TEST(CompareLaws, right_laws_have_errors_of_the_size_of_the_sampling) {
 TEST(CompareLaws, wrong_laws_have_errors_that_are_not_of_the_sampling) {
   const PredictionReport report = compared({"noise_free"}, 20'000, straight());
   const LawErrors& errors = report.laws->methods.front().stages.back();
-  // Four of five parts of the variance are noise, less what the grid of points lacks of the fifth.
+  // Four fifths of the variance are noise, less what the grid of points lacks of the other fifth.
   EXPECT_GT(errors.covariance, 0.78);
   EXPECT_LT(errors.covariance, 0.86);
   EXPECT_GT(errors.w2, 3.0 * report.laws->floors.back().w2);
@@ -132,7 +132,7 @@ TEST(PathCollector, has_the_moments_of_the_paths_whatever_the_order_of_their_bat
   const PathLaws laws = collector.laws(60);
   const Eigen::VectorXd mean = numbers.rowwise().mean();
   const Eigen::MatrixXd centred = numbers.colwise() - mean;
-  // Sums of sixty numbers of the order of ten.
+  // Sums of sixty numbers of order ten.
   EXPECT_LE((laws.moments[0].mean - mean).norm(), 1e-13);
   EXPECT_LE((laws.moments[1].mean - 2.0 * mean).norm(), 1e-13);
   EXPECT_LE((laws.moments[0].covariance - centred * centred.transpose() / 60.0).norm(), 1e-12);

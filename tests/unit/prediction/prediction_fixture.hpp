@@ -12,7 +12,7 @@
 
 namespace qsmpc::testing {
 
-/// A car in a square, of few particles.
+/// A car in a square, with few particles.
 inline harness::Scenario small_scenario(const std::vector<std::string>& overrides = {}) {
   return harness::parse_scenario(
       "name: small\n"

@@ -1,4 +1,4 @@
-// What a prediction is written as: predict.json, predict.h5, the table, and docs/predict.md.
+// The outputs of a prediction: predict.json, predict.h5, the table, and docs/predict.md.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -91,7 +91,7 @@ TEST(PredictionJson, takes_what_any_controller_decides) {
       EXPECT_EQ(json["cost"].is_null(), !parts.cost);
       EXPECT_EQ(report.solver_status.empty(), !parts.status);
       EXPECT_EQ(prediction_table(report).find("expected cost") == std::string::npos, !parts.cost);
-      // The certificates are those of this controller's policy.
+      // The certificates are for this controller's policy.
       EXPECT_TRUE(contradicted_stages(report).empty());
     }
   }

@@ -59,7 +59,7 @@ TEST(PredictScenario, given_inputs_are_taken_as_they_are) {
       std::invalid_argument);
 }
 
-// Without noise of the heading the position is Gaussian: x_k ~ N(0.15 k, 0.01 (k + 1)).
+// Without heading noise the position is Gaussian: x_k ~ N(0.15 k, 0.01 (k + 1)).
 TEST(MonteCarlo, rates_are_those_of_the_law_where_that_is_known) {
   const Scenario scenario = testing::small_scenario(
       {"controller.policy=open_loop", "initial_state.covariance=[0.01, 0.01, 0]",
@@ -74,7 +74,7 @@ TEST(MonteCarlo, rates_are_those_of_the_law_where_that_is_known) {
     const double p = controller::normal_cumulative(-(0.5 - 0.15 * k) / std::sqrt(0.01 * (k + 1)));
     const double rate = static_cast<double>(counts.stages[static_cast<std::size_t>(k) - 1]) /
                         static_cast<double>(kSamples);
-    // Five standard deviations.
+    // Five standard errors.
     EXPECT_NEAR(rate, p, 5.0 * std::sqrt(p * (1.0 - p) / static_cast<double>(kSamples))) << k;
   }
   EXPECT_GE(counts.any_stage, counts.stages.back());

@@ -1,4 +1,4 @@
-// What the shipped scenarios' first plans are certified with, beside simulated paths.
+// The certificates of the shipped scenarios' first plans, compared with simulated paths.
 #include <string>
 #include <vector>
 
@@ -16,10 +16,10 @@ namespace shipped_predictions_test {
 using ::testing::IsEmpty;
 
 const int kPaths = testing::by_effort(4000, 20000, 100000);
-// A truth that is certainly below it is not to be certified with 1.
+// Where the truth is certainly below this, the certificate must be below 1.
 constexpr double kSmall = 0.01;
 
-/// Those without obstacles that move, which are not predicted.
+/// The scenarios without moving obstacles; those with them are not predicted.
 std::vector<std::string> predictable() {
   std::vector<std::string> names;
   for (const std::string& name : shipped_scenario_names()) {

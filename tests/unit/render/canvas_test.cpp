@@ -126,17 +126,17 @@ TEST(canvas, bytes_that_are_not_utf8_are_replaced_one_by_one) {
                             "b"}) {
     EXPECT_EQ(picture_of(bytes).rgb, picture_of(replaced).rgb);
   }
-  // A surrogate, an overlong '/', what is above the last code point, and a sequence cut short.
+  // A surrogate, an overlong '/', a value above the last code point, and a truncated sequence.
   for (const char* bytes : {"\xED\xA0\x80", "\xE0\x80\xAF", "\xF5\x80\x80", "\xF0\x9F\x98"}) {
     EXPECT_EQ(picture_of(bytes).rgb, picture_of("\uFFFD\uFFFD\uFFFD").rgb);
   }
-  // U+10FFFF, which is no character.
+  // U+10FFFF, which is not a character.
   EXPECT_EQ(picture_of("\xF4\x8F\xBF\xBF").rgb, picture_of("\uFFFD\uFFFD\uFFFD\uFFFD").rgb);
   EXPECT_EQ(picture_of("a\nb\tc").rgb, picture_of("a b c").rgb);
 }
 
 TEST(canvas, text_is_drawn_where_no_font_is_installed) {
-  // A process that has looked for no font yet.
+  // In a process that has not looked for fonts yet.
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const std::string configuration = fresh_folder() / "fonts.conf";
   std::ofstream(configuration) << "<?xml version=\"1.0\"?><fontconfig/>";

@@ -1,4 +1,4 @@
-// What a video file holds, found by decoding all of it.
+// The contents of a video file, found by decoding all of it.
 #pragma once
 
 #include <string>

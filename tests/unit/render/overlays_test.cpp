@@ -1,4 +1,4 @@
-// What a plan believes, in the picture: ellipses, tube, raw points, ghost, clearance; and panes.
+// A plan's belief in the picture: ellipses, tube, raw points, ghost, clearance; and panes.
 #include <fstream>
 #include <iterator>
 #include <numbers>
@@ -17,7 +17,7 @@
 namespace qsmpc::render {
 namespace overlays_test {
 
-// Thin lines and translucent surfaces take on a part of what is below.
+// Thin lines and translucent surfaces mix with the colours below them.
 constexpr int kMixedColour = 90;
 constexpr double kMarks = kMarkHeight;  // m
 
@@ -29,7 +29,7 @@ BeliefEllipses ellipses_at(double x, double y) {
   return {.half = {{x, y}, {0.3, 0.0}, {0.0, 0.2}}, .most = {{x, y}, {0.8, 0.2}, {-0.1, 0.4}}};
 }
 
-// Of the pixel at `place` and its neighbours the one that is most like `colour`: lines are thin.
+// The pixel among `place` and its neighbours that is closest to `colour`, since lines are thin.
 Pixel nearest_pixel(const Image& image, const PixelPoint& place, const Colour& colour) {
   Pixel nearest = pixel_at(image, place);
   for (const double dx : {-1.0, 0.0, 1.0}) {
@@ -41,7 +41,7 @@ Pixel nearest_pixel(const Image& image, const PixelPoint& place, const Colour& c
   return nearest;
 }
 
-/// How much of the forecast's colour is at the rightmost point of the last of two ellipses.
+/// The contrast of the forecast's colour at the rightmost point of the last of two ellipses.
 int forecast_contrast(double weight) {
   Renderer renderer(large_picture("top"), small_world(), kRedBox);
   Frame frame;
@@ -66,7 +66,7 @@ TEST(overlays, forecasts_are_fainter_the_later_and_the_less_probable) {
   const int certain = forecast_contrast(1.0);
   const int improbable = forecast_contrast(0.1);
   EXPECT_GT(certain, improbable + 10);
-  EXPECT_GT(improbable, 5);  // still seen
+  EXPECT_GT(improbable, 5);  // still visible
 }
 
 TEST(overlays, ellipses_are_drawn_in_their_stages_colour) {

@@ -1,4 +1,4 @@
-// Points by the thousand: what is drawn of them, and how they are thinned.
+// Thousands of points: which ones are drawn, and how they are thinned.
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(thinning, keeps_every_nth_by_weight_and_the_whole_weight) {
   const ParticleStage kept = thinned(all, 5);
   EXPECT_EQ(kept.points.size(), 20U);
   EXPECT_NEAR(std::accumulate(kept.weights.begin(), kept.weights.end(), 0.0), 1.0, 1e-12);
-  // Heavy and light ones alike: the weights are those of every fifth, times nearly five.
+  // Heavy and light ones alike: every fifth is kept, with its weight times nearly five.
   for (std::size_t i = 0; i < kept.points.size(); ++i) {
     const auto index = static_cast<std::size_t>(kept.points[i].x);
     EXPECT_NEAR(kept.weights[i] / all.weights[index], 5.0, 0.05);
@@ -52,7 +52,7 @@ TEST(thinning, of_one_changes_nothing_and_of_many_keeps_a_point) {
   EXPECT_TRUE(thinned({}, 3).points.empty());
 }
 
-// Each of the three ways in which points are drawn, by their size.
+// Points are drawn in three ways, depending on their size.
 TEST(points, of_every_size_lie_where_they_project) {
   Renderer renderer(small_picture("top"), small_world(), kRedBox);
   for (const std::size_t others : {std::size_t{0}, std::size_t{60}, std::size_t{5000}}) {

@@ -19,7 +19,7 @@ constexpr double kObstacleTop = 0.4;  // m
 constexpr int kSameColour = 60;
 constexpr int kOtherColour = 70;
 
-/// A square of 2 m about the origin, moved by (0.5, 0.5), without its upper right quarter.
+/// A 2 m square about the origin, shifted by (0.5, 0.5), without its upper right quarter.
 const PlanarOutline kCorner = {{-0.5, -0.5}, {1.5, -0.5}, {1.5, 0.5},
                                {0.5, 0.5},   {0.5, 1.5},  {-0.5, 1.5}};
 
@@ -95,8 +95,8 @@ TEST(prisms, look_like_a_box_of_the_same_outline) {
     for (std::size_t i = 0; i < box.image.rgb.size(); ++i) {
       different += std::abs(box.image.rgb[i] - prism.image.rgb[i]) > 8 ? 1 : 0;
     }
-    // A prism is a little behind, so that its foot differs by a pixel, and its lines are smoothed
-    // otherwise where their ends meet: 0.2 %.
+    // A prism is slightly behind, so its foot differs by a pixel, and its lines are smoothed
+    // differently where their ends meet: 0.2 %.
     EXPECT_LT(different, box.image.rgb.size() / 300) << camera;
   }
 }
@@ -106,7 +106,7 @@ TEST(prisms, of_a_corner_leave_the_ground_in_it_free) {
   world.prisms = {corner_prism()};
   Picture picture(world, "top");
   Picture empty(small_world(), "top");
-  // Beside its own shadow, in the corner, and outside of it.
+  // Neither point is in the shadow: one is inside the corner, the other outside the shape.
   for (const PlanarPoint& free : {PlanarPoint{1.3, 1.3}, PlanarPoint{-0.9, 1.3}}) {
     const Pixel pixel = picture.at(free.x, free.y, 0.0);
     const Pixel ground = empty.at(free.x, free.y, 0.0);
@@ -119,14 +119,14 @@ TEST(prisms, of_a_corner_leave_the_ground_in_it_free) {
     const Pixel pixel = picture.at(top.x, top.y, kObstacleTop);
     differing += colour_difference(pixel, palette::kObstacle) > kSameColour ? 1 : 0;
   }
-  EXPECT_LE(differing, 1);  // a stripe may go through one of them
+  EXPECT_LE(differing, 1);  // a stripe may cross one of them
 }
 
 TEST(prisms, in_front_hide_a_particle) {
   const PlanarPoint particle{1.1, 0.0};
   const Frame frame = frame_with_particle(particle);
   World world = small_world();
-  // A square on its corner, between the chase camera and the point.
+  // A square standing on its corner, between the chase camera and the point.
   world.prisms = {convex({{0.4, 0.0}, {0.8, -0.4}, {1.0, 0.0}, {0.8, 0.4}})};
   Renderer renderer(small_picture("chase"), world, kRedBox);
   Image image;
@@ -152,7 +152,7 @@ TEST(prisms, that_move_stand_where_the_frame_has_them_in_a_colour_of_their_own) 
     return count;
   };
   frame.moving = {convex({{-1.5, -0.5}, {-0.5, -0.5}, {-0.5, 0.5}, {-1.5, 0.5}})};
-  EXPECT_LE(differing(-1.0), 2);  // stripes may go through some
+  EXPECT_LE(differing(-1.0), 2);  // stripes may cross some of them
   frame.moving = {convex({{0.5, -0.5}, {1.5, -0.5}, {1.5, 0.5}, {0.5, 0.5}})};
   EXPECT_LE(differing(1.0), 2);
   EXPECT_EQ(differing(-1.0), 4);

@@ -1,4 +1,4 @@
-// A small world, and what tests ask of pictures.
+// A small world, and helpers for checks of pictures.
 #pragma once
 
 #include <cmath>
@@ -29,7 +29,7 @@ inline RenderOptions small_picture(const std::string& camera) {
   return {.width = 640, .height = 360, .camera = camera, .chase_distance = 0.0, .region = {}};
 }
 
-/// One particle that has the whole weight: the largest disc that is drawn.
+/// A single particle with the whole weight: the largest disc that is drawn.
 inline Frame frame_with_particle(const PlanarPoint& particle) {
   Frame frame;
   frame.particles.push_back({.points = {particle}, .weights = {1.0}});
@@ -42,7 +42,7 @@ struct Pixel {
   int blue = 0;
 };
 
-/// The pixel at `place`; fails the test when it is outside of the picture.
+/// The pixel at `place`; fails the test if it is outside the picture.
 inline Pixel pixel_at(const Image& image, const PixelPoint& place) {
   const int x = static_cast<int>(std::floor(place.x));
   const int y = static_cast<int>(std::floor(place.y));
@@ -54,7 +54,7 @@ inline Pixel pixel_at(const Image& image, const PixelPoint& place) {
   return {image.rgb[index], image.rgb[index + 1], image.rgb[index + 2]};
 }
 
-/// Largest difference of a channel, of 255.
+/// Largest difference of a channel, out of 255.
 inline int colour_difference(const Pixel& pixel, const Colour& colour) {
   const auto difference = [](int value, float wanted) {
     return std::abs(value - static_cast<int>(std::lround(255.0F * wanted)));
@@ -63,7 +63,7 @@ inline int colour_difference(const Pixel& pixel, const Colour& colour) {
                    difference(pixel.blue, colour.blue)});
 }
 
-/// An empty folder of the running test's own.
+/// An empty folder for the running test.
 inline std::filesystem::path fresh_folder() {
   const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
   std::string name = std::string(test->test_suite_name()) + "." + test->name();

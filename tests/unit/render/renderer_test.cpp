@@ -13,8 +13,8 @@
 namespace qsmpc::render {
 namespace renderer_test {
 
-// Smoothing and the opacity of particles mix a little of the surroundings into a colour; another
-// one is as far from it as two stages' colours are from each other.
+// Smoothing and the particles' opacity mix some of the surroundings into a colour; a different
+// colour is as far from it as two stages' colours are from each other.
 constexpr int kSameColour = 60;
 constexpr int kOtherColour = 150;
 
@@ -124,7 +124,7 @@ TEST(renderer, obstacle_in_front_does_not_hide_the_vehicle) {
   Image image;
   renderer.draw(frame, image);
   const PixelPoint middle = *renderer.locate(frame, {0.0, 0.0}, 0.05);
-  // Of some places: the obstacle's top has red stripes.
+  // Averaged over several places: the obstacle's top has red stripes.
   const auto redness = [&image, &middle] {
     int surplus = 0;
     for (double dx = -20.0; dx <= 20.0; ++dx) {
@@ -140,8 +140,8 @@ TEST(renderer, obstacle_in_front_does_not_hide_the_vehicle) {
   EXPECT_GT(shining_through, redness() + 60);
 }
 
-// The lamps in its file would make everything white, and its terrain is 40 m long and reaches above
-// the ground.
+// The file's lamps would make everything white, and its terrain is 40 m long and rises above the
+// ground.
 const std::string kBlueBoxOnTerrain =
     std::string(QSMPC_SOURCE_DIR) + "/tests/data/blue_box_on_terrain.xml";
 
@@ -203,8 +203,8 @@ TEST(renderer, area_of_a_particle_grows_with_its_weight) {
     }
     return count;
   };
-  // Four times the weight is four times the area; discs of 12 and 24 pixels leave a quarter of
-  // doubt.
+  // Four times the weight gives four times the area; discs of 12 and 24 pixels leave an uncertainty
+  // of a quarter.
   const int light = coloured_pixels(0.015);
   const int heavy = coloured_pixels(0.06);
   EXPECT_GT(light, 0);
@@ -220,7 +220,7 @@ TEST(renderer, top_and_fixed_cameras_show_all_of_the_bounds) {
                                       PlanarPoint{3.0, 3.0}, PlanarPoint{-3.0, 3.0}}) {
       const auto place = renderer.locate(frame, corner);
       ASSERT_TRUE(place);
-      EXPECT_GT(place->x, 0.22 * 640) << camera;  // the display takes some of it
+      EXPECT_GT(place->x, 0.22 * 640) << camera;  // the display takes up some of it
       EXPECT_LT(place->x, 640) << camera;
       EXPECT_GT(place->y, 0) << camera;
       EXPECT_LT(place->y, 360) << camera;
@@ -248,7 +248,7 @@ TEST(renderer, refuses_frames_that_do_not_fit_the_vehicle) {
   frame.pose.x = std::nan("");
   EXPECT_THROW(renderer.draw(frame, image), std::invalid_argument);
   frame.pose.x = 0.0;
-  renderer.draw(frame, image);  // and goes on after both
+  renderer.draw(frame, image);  // and works after both
   EXPECT_FALSE(image.rgb.empty());
 }
 

@@ -26,7 +26,7 @@ constexpr int kFps = 10;
 constexpr Colour kGround{0.8F, 0.25F, 0.1F};
 constexpr Colour kBar{0.1F, 0.3F, 0.9F};
 
-// A plain colour with a bar that moves, so that frames differ.
+// A plain colour with a moving bar, so that frames differ.
 Image test_image(int index) {
   Image image{kWidth, kHeight, {}};
   image.rgb.resize(3 * kWidth * kHeight);
@@ -65,11 +65,11 @@ int files_in(const std::filesystem::path& folder) {
                                         std::filesystem::directory_iterator()));
 }
 
-// FFmpeg 5 writes animated WebP and cannot read it: what its chunks say.
+// FFmpeg 5 writes animated WebP but cannot read it: facts from its chunks.
 struct WebpFacts {
   int width = 0;
   int height = 0;
-  int loops = -1;  // 0: for ever
+  int loops = -1;  // 0: forever
   int pictures = 0;
   int milliseconds = 0;
 };
@@ -113,7 +113,7 @@ TEST(video_formats, webm_is_vp9_and_whole) {
   EXPECT_EQ(video.width, kWidth);
   EXPECT_EQ(video.height, kHeight);
   EXPECT_EQ(video.frames, 25);
-  EXPECT_NEAR(video.duration, 2.5, 1e-3);  // the container counts milliseconds
+  EXPECT_NEAR(video.duration, 2.5, 1e-3);  // the container uses milliseconds
   EXPECT_TRUE(video.bt709);
   // 8-bit limited range and lossy coding: a few of 255.
   EXPECT_LT(colour_difference(pixel_at(video.first, {80.0, 20.0}), kGround), 8);
@@ -146,7 +146,7 @@ TEST(video_formats, killed_process_leaves_a_playable_webm) {
   ASSERT_EQ(waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFSIGNALED(status));
   EXPECT_FALSE(std::filesystem::exists(path));
-  // The open cluster, a second, is lost.
+  // The open cluster of one second is lost.
   EXPECT_GE(decode_video(path + ".partial").frames, 48);
 }
 
@@ -158,11 +158,11 @@ TEST(video_formats, gif_shows_every_frame_in_its_colours) {
   EXPECT_EQ(video.width, kWidth);
   EXPECT_EQ(video.height, kHeight);
   EXPECT_EQ(video.frames, 12);
-  EXPECT_NEAR(video.duration, 1.2, 1e-2);  // the container counts hundredths
-  // Two colours and a blend or two between them: the palette has them all.
+  EXPECT_NEAR(video.duration, 1.2, 1e-2);  // the container uses hundredths
+  // Two colours and a few blends between them: the palette has them all.
   EXPECT_LE(colour_difference(pixel_at(video.first, {80.0, 20.0}), kGround), 2);
   EXPECT_LE(colour_difference(pixel_at(video.first, {10.0, 75.0}), kBar), 2);
-  EXPECT_THAT(bytes_of(folder / "video.gif"), HasSubstr("NETSCAPE2.0"));  // again and again
+  EXPECT_THAT(bytes_of(folder / "video.gif"), HasSubstr("NETSCAPE2.0"));  // loops forever
   EXPECT_EQ(files_in(folder), 1);
 }
 
@@ -224,7 +224,7 @@ TEST(video_formats, qualities_out_of_range_and_gifs_too_fast_are_refused) {
 
 class EveryFormat : public ::testing::TestWithParam<std::string> {};
 
-// Smooth noise, which is what costs space.
+// Smooth noise, which is expensive to encode.
 Image noisy_image(int index) {
   Image image = test_image(index);
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {

@@ -31,7 +31,7 @@ constexpr int kWidth = 160;
 constexpr int kHeight = 96;
 constexpr int kFps = 10;
 
-// A plain colour with a bar that moves, so that frames differ.
+// A plain colour with a moving bar, so that frames differ.
 Image test_image(int index) {
   Image image{kWidth, kHeight, {}};
   image.rgb.resize(3 * kWidth * kHeight);
@@ -73,7 +73,7 @@ TEST(video_writer, finished_video_is_whole_and_alone) {
   EXPECT_EQ(decoded.width, kWidth);
   EXPECT_EQ(decoded.height, kHeight);
   EXPECT_EQ(decoded.frames, 25);
-  EXPECT_NEAR(decoded.duration, 2.5, 1e-3);  // the container counts milliseconds
+  EXPECT_NEAR(decoded.duration, 2.5, 1e-3);  // the container uses milliseconds
   EXPECT_TRUE(decoded.bt709);
   // 8-bit limited range and lossy coding: a few of 255.
   EXPECT_LT(colour_difference(pixel_at(decoded.first, {80.0, 20.0}),
@@ -125,7 +125,7 @@ TEST(video_writer, killed_process_leaves_a_playable_partial_and_nothing_under_it
   ASSERT_EQ(waitpid(child, &status, 0), child);
   ASSERT_TRUE(WIFSIGNALED(status));
   EXPECT_FALSE(std::filesystem::exists(path));
-  // What the encoder looks ahead (four seconds at most) and the open fragment are lost.
+  // The encoder's look-ahead (at most four seconds) and the open fragment are lost.
   EXPECT_GE(decode_video(path + ".partial").frames, 60);
 }
 
@@ -157,7 +157,7 @@ TEST(video_writer, unknown_preset_is_an_error) {
 
 TEST(video_writer, file_that_cannot_grow_is_an_error_and_leaves_nothing_under_its_name) {
   const std::string path = fresh_folder() / "video.mp4";
-  // In a process of its own: a limit on the size of files stands in for a full disk.
+  // In its own process: a file size limit stands in for a full disk.
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -188,7 +188,7 @@ TEST(video_writer, finishing_without_frames_is_an_error) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-// Bytes in memory, which may be lost after so many of them.
+// Bytes in memory; writing fails beyond a certain number of bytes.
 class MemoryFile final : public ByteFile {
  public:
   explicit MemoryFile(std::int64_t room = 1 << 24) : room_(room) {}
@@ -230,7 +230,7 @@ TEST_P(EveryKeptFormat, needs_no_file_system) {
   }
   const std::string path = fresh_folder() / ("video." + video_format_name(GetParam()));
   harness::write_file(path, finished.bytes());
-  // FFmpeg 5 writes animated WebP and cannot read it.
+  // FFmpeg 5 writes animated WebP but cannot read it.
   if (GetParam() != VideoFormat::kWebp) {
     EXPECT_EQ(decode_video(path).frames, 12);
   }
@@ -249,7 +249,7 @@ TEST_P(EveryKeptFormat, what_a_file_throws_reaches_the_caller) {
       video.finish(finished);
     };
     EXPECT_THAT(error_of([&] { write(full, enough); }), HasSubstr("no room in memory")) << room;
-    // FFmpeg 5's own writer of GIF loses a packet's memory where its file is full.
+    // FFmpeg 5's own GIF writer leaks a packet if the file is full.
     if (GetParam() == VideoFormat::kGif) continue;
     MemoryFile narrow(room / 10);
     EXPECT_THROW(write(enough, narrow), harness::IoError) << room;

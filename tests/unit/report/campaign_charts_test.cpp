@@ -174,7 +174,7 @@ TEST(OutcomeFigure, has_room_for_many_variants) {
 TEST(CampaignFigures, begin_the_certified_axis_where_the_least_value_is) {
   const std::vector<Chart> charts = campaign_figures(example())[1].charts;
   for (const Chart& chart : charts) {
-    // The least of the example, 1e-9, or the decade below it by rounding of its mean.
+    // The smallest value of the example, 1e-9, or the decade below it if its mean is rounded.
     EXPECT_LE(chart.least_x, 1.0001e-9) << chart.title;
     EXPECT_GE(chart.least_x, 0.9999e-10) << chart.title;
   }
@@ -253,7 +253,7 @@ TEST(CampaignPage, says_first_how_many_drives_were_unsafe_and_certificates_after
                                 "<p>1009 reached the target, 28 collided, 2 left the bounds, 0 ran "
                                 "out of time, 1 faulted.</p>"));
   EXPECT_TRUE(testing::contains(page, "Most often in variant 1: 75 % of its drives (blind).</p>"));
-  // Its certificates hold, which is no good news of the drives.
+  // Its certificates hold, which is not good news about the drives.
   const std::size_t tick = page.find("✓ No certificate is refuted");
   ASSERT_NE(tick, std::string::npos);
   EXPECT_EQ(page.find("✓"), tick);

@@ -18,7 +18,7 @@ namespace campaign_drives_test {
 
 using testing::contains;
 
-/// Drives with costs 1, 2, … and a path each, in the quick scenario.
+/// Drives with costs 1, 2, …, each with a path, in the quick scenario.
 VariantStatistics variant(std::int64_t id, const std::vector<std::string>& outcomes) {
   VariantTally tally;
   std::vector<double> costs;

@@ -1,4 +1,4 @@
-// Obstacles that move, on the map of an episode and in the data of its page.
+// Moving obstacles, on the map of an episode and in the data of its page.
 #include "harness/report/driven_ways.hpp"
 
 #include <cmath>
@@ -24,9 +24,9 @@ using testing::contains;
 using testing::numbers_of;
 
 constexpr std::size_t kSteps = 6;
-constexpr std::size_t kNearest = 4;  // the control instant at which it is on the vehicle's way
+constexpr std::size_t kNearest = 4;  // the control instant at which it is on the vehicle's path
 
-/// The example, and a disc that comes down upon the vehicle and goes on.
+/// The example, and a disc that comes down (along −y) onto the vehicle and continues.
 Trace met_trace() {
   Trace trace = testing::example_trace({.steps = kSteps});
   controller::Obstacle walker(controller::DiscShape{.centre = {2.0, 6.0}, .radius = 0.3});
@@ -104,7 +104,7 @@ TEST(MovingData, has_middles_turns_and_forecasts_period_by_period) {
   const auto places = numbers_of<float>(json["places"]);
   ASSERT_EQ(places.size(), 5 * stages.size() * kSteps);
   EXPECT_EQ(numbers_of<float>(json["weights"]), std::vector<float>(kSteps, 1.0F));
-  // It is seen to within 5 cm; a velocity that it is not sure of makes its place wider.
+  // It is observed to within 5 cm; an uncertain velocity widens its predicted place.
   const float* const first = &places[5 * stages.size() * 1];
   EXPECT_NEAR(first[1], poses[3 * 1 + 1], 0.2);
   EXPECT_LT(first[4], 0.0026F);

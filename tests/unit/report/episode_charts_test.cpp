@@ -23,7 +23,7 @@ Chart chart_of(const Trace& trace, const std::string& title) {
   return found == charts.end() ? Chart{} : *found;
 }
 
-/// A drive whose inputs are from 0 to 1, with bounds of `bound` to either side.
+/// A drive with inputs from 0 to 1 and bounds ±`bound`.
 Trace bounded(double bound) {
   Trace trace = testing::example_trace({.steps = 5});
   for (std::size_t k = 0; k < trace.steps.size(); ++k) {
@@ -81,7 +81,7 @@ TEST(EpisodeCharts, budgets_of_very_different_sizes_are_on_a_logarithmic_axis) {
   const Chart chart = chart_of(trace, "Error budget");
   EXPECT_EQ(chart.y_scale, Scale::kLog);
   EXPECT_TRUE(contains(chart.note, "drawn at its foot")) << chart.note;
-  // One that is not finite is left out, and makes no scale.
+  // A value that is not finite is omitted and does not affect the scale.
   trace.steps.front().budgets.back().total = kInfinity;
   EXPECT_EQ(chart_of(trace, "Error budget").y_scale, Scale::kLinear);
 }

@@ -66,7 +66,7 @@ TEST(EpisodeData, particles_are_where_the_trace_has_them) {
         const double x = stage.locations(0, i);
         if (x < x_lower || x > x_upper || stage.locations(1, i) < particles["yLower"]) continue;
         EXPECT_NEAR(x_lower + (x_upper - x_lower) * places[2 * at] / 65534.0, x,
-                    (x_upper - x_lower) / 65534.0);  // to the nearest place
+                    (x_upper - x_lower) / 65534.0);  // to the nearest grid position
       }
     }
   }
@@ -107,7 +107,7 @@ TEST(EpisodeData, a_page_does_not_hold_more_particles_than_it_should) {
   const nlohmann::json particles = data_of(trace)["map"]["particles"];
   EXPECT_GE(particles["stride"], 2);
   const std::size_t kept = numbers_of<std::uint8_t>(particles["sizes"]).size();
-  EXPECT_LT(kept, 450'000U);  // a stage's first one is always kept
+  EXPECT_LT(kept, 450'000U);  // the first particle of a stage is always kept
   EXPECT_GT(kept, all / (particles["stride"].get<std::size_t>() + 1));
 }
 

@@ -21,7 +21,7 @@ using testing::tag_problem;
 
 EpisodePageOptions with_video() { return {.video_file = "episode.mp4"}; }
 
-/// The page without its own style, scripts and their data, whose words are none of a trace's.
+/// The page without its own style, scripts and data, whose words do not come from a trace.
 std::string markup_of(std::string page) {
   for (const auto& [begin, end] : {std::pair("<style>", "</style>"), {"<script", "</script>"}}) {
     for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at)) {
@@ -33,7 +33,7 @@ std::string markup_of(std::string page) {
   return page;
 }
 
-/// What stands between `begin` and the next `end`; empty if there is no such place.
+/// The text between `begin` and the next `end`; empty if there is none.
 std::string between(const std::string& page, const std::string& begin, const std::string& end) {
   const std::size_t at = page.find(begin);
   if (at == std::string::npos) return {};
@@ -124,7 +124,7 @@ TEST(EpisodePage, texts_of_the_scenario_do_nothing) {
   trace.steps[1].solver_status = attack;
   const std::string whole =
       episode_page(EpisodeView(trace), {.video_file = "\" onerror=\"alert(3)"});
-  // Two scripts: the data, in which no tag can begin or end, and the page's own.
+  // Two scripts: the data, in which no tag can begin or end, and the page's own script.
   EXPECT_EQ(testing::occurrences(whole, "<script"), 2);
   EXPECT_EQ(testing::occurrences(whole, "</script>"), 2);
   const std::string data = between(whole, "id=\"episode-data\">", "</script>");
@@ -172,7 +172,7 @@ TEST(EpisodePage, holds_certificates_against_limits_that_are_set) {
   EXPECT_TRUE(testing::contains(page, "limit 0, exceeded in 40 of 40 periods"));
   EXPECT_FALSE(testing::contains(page, "Mission risk"));
   EXPECT_TRUE(testing::contains(page, "limit of a stage"));
-  EXPECT_FALSE(testing::contains(page, "limit of a plan"));  // 0 has no place in the chart
+  EXPECT_FALSE(testing::contains(page, "limit of a plan"));  // 0 cannot be shown in the chart
 }
 
 TEST(EpisodePage, draws_the_body_along_the_way) {
@@ -184,7 +184,7 @@ TEST(EpisodePage, draws_the_body_along_the_way) {
   ASSERT_EQ(body.heading, 2);
   const std::string page = markup_of(episode_page(EpisodeView(trace), with_video()));
   EXPECT_TRUE(testing::contains(page, "body of the vehicle"));
-  // At every tenth step of 40 and at the end, and once in the legend.
+  // At every tenth of 40 steps and at the end, and once in the legend.
   EXPECT_EQ(testing::occurrences(page, "class=\"outline thin c6\""), 6);
 }
 
@@ -314,7 +314,7 @@ TEST(EpisodePage, a_state_far_away_leaves_the_map_readable) {
     const std::string page = episode_page(EpisodeView(trace), {});
     const std::size_t begin = page.find("<figcaption>Map");
     const std::string map = page.substr(begin, page.find("</figure>", begin) - begin);
-    // The axis reaches one more length of the bounds, -1 … 12, and not to the state.
+    // The axis extends by one more length of the bounds, -1 … 12, and not to the state.
     EXPECT_TRUE(testing::contains(map, sign > 0.0 ? ">25</text>" : ">−10</text>"));
     EXPECT_FALSE(testing::contains(map, "10⁹"));
     EXPECT_FALSE(testing::contains(map, "10⁸"));

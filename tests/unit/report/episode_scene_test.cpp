@@ -28,18 +28,18 @@ using testing::contains;
 using testing::numbers_of;
 using testing::occurrences;
 
-constexpr std::size_t kPlace = 7;  // numbers of a place
+constexpr std::size_t kPlace = 7;  // numbers per place
 constexpr double kSinglePrecision = 1e-6;
 
-/// A vehicle that slides along x and y and turns, as plain as can be: qpos is x, y, heading.
+/// A minimal vehicle that slides along x and y and turns: qpos is x, y, heading.
 constexpr const char* kVehicle =
     "<mujoco><compiler angle='radian'/><worldbody><body pos='0 0 0.2'>"
     "<joint type='slide' axis='1 0 0'/><joint type='slide' axis='0 1 0'/>"
     "<joint type='hinge' axis='0 0 1'/>"
     "<geom type='box' size='.3 .2 .1' rgba='1 .5 0 1'/></body></worldbody></mujoco>";
 
-/// The example with that vehicle, and the motion of a MuJoCo plant: three samples a period, and one
-/// more after the disturbance.
+/// The example with that vehicle and the motion of a MuJoCo plant: three samples per period, and
+/// one more after the disturbance.
 Trace driven_trace(const std::string& mjcf) {
   Trace trace = testing::example_trace();
   trace.scenario.plant.mjcf = mjcf;
@@ -91,7 +91,7 @@ TEST(EpisodeScene, a_disturbance_moves_the_vehicle_over_all_of_its_period) {
   const Trace trace = driven_trace(folder.file("vehicle.xml", kVehicle));
   const auto places = numbers_of<float>(nlohmann::json::parse(scene_of(trace).data)["places"]);
   for (std::size_t k = 0; k + 1 < trace.steps.size(); ++k) {
-    // Half of the way, and half of the jump.
+    // Half of the motion, and half of the jump.
     const Eigen::VectorXd middle = 0.5 * (trace.steps[k].state + trace.steps[k + 1].state);
     EXPECT_NEAR(places[kPlace * (2 * k + 1)], middle[0], kSinglePrecision);
     EXPECT_NEAR(places[kPlace * (2 * k + 1) + 1], middle[1], kSinglePrecision);
@@ -136,7 +136,7 @@ TEST(EpisodeScene, holds_polygons_and_half_planes) {
   EXPECT_EQ(ground["halfPlanes"], nlohmann::json({{0.0, 1.0, 11.0}}));
 }
 
-/// A cart that rolls and a pole that falls, by the model alone.
+/// A rolling cart with a falling pole, by the model alone.
 Trace cart_trace() {
   Trace trace;
   trace.scenario = load_scenario("cart_pole");
@@ -163,7 +163,7 @@ TEST(EpisodeScene, of_a_system_without_a_place_in_the_plane_has_its_joints_at_ev
   EXPECT_NEAR(times.back(), 3.0 * trace.scenario.time_step, kSinglePrecision);
   const std::size_t parts = scene["parts"];
   ASSERT_EQ(places.size(), kPlace * parts * times.size());
-  // Every part of the cart and its pole has moved with the cart by 1.5 m.
+  // Every part of the cart and its pole has moved by 1.5 m with the cart.
   bool moved = false;
   for (std::size_t part = 0; part < parts; ++part) {
     const float way = places[kPlace * (3 * parts + part)] - places[kPlace * part];
@@ -207,7 +207,7 @@ TEST(EpisodeScene, says_that_the_model_has_changed_since_the_drive) {
   trace.vehicle_digest = mujoco_model_digest(path);
   EXPECT_EQ(scene_of(trace).note, "");
   std::string changed = kVehicle;
-  changed.replace(changed.find("1 .5 0 1"), 8, "0 .5 1 1");  // as many coordinates
+  changed.replace(changed.find("1 .5 0 1"), 8, "0 .5 1 1");  // the same number of coordinates
   (void)folder.file("vehicle.xml", changed);
   EXPECT_TRUE(contains(scene_of(trace).note, "vehicle.xml has changed since the drive"));
   trace.vehicle_digest.clear();
@@ -233,7 +233,7 @@ TEST(EpisodeScene, keeps_every_nth_sample_of_a_long_drive_and_the_last_one) {
     trace.motion.push_back({.time = 1e-3 * i, .qpos = {1e-3 * i, 0.0, 0.0}});
   }
   const auto times = numbers_of<float>(nlohmann::json::parse(scene_of(trace).data)["times"]);
-  EXPECT_EQ(times.size(), 16'668U);  // every third of 0 … 50,000, and that
+  EXPECT_EQ(times.size(), 16'668U);  // every third of 0 … 50,000, and the last
   EXPECT_NEAR(times[1], 3e-3, kSinglePrecision);
   EXPECT_NEAR(times.back(), 50.0, 1e-5);
 }

@@ -10,7 +10,7 @@ namespace line_colours_test {
 
 using ::testing::ElementsAre;
 
-/// A drive along the x axis over these ways, m, certified to these risks.
+/// A drive along the x axis with these distances per period, m, certified with these risks.
 Trace drive(const std::vector<double>& ways, const std::vector<double>& risks) {
   Trace trace;
   trace.scenario.time_step = 0.5;

@@ -1,4 +1,4 @@
-// Reads what pages hold packed (harness/report/packed_numbers.hpp).
+// Reads packed data of pages (harness/report/packed_numbers.hpp).
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace qsmpc::testing {
 
-/// What base64 `text` stands for.
+/// The bytes that base64 `text` encodes.
 inline std::vector<std::uint8_t> bytes_of(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::vector<std::uint8_t> bytes;
@@ -27,7 +27,7 @@ inline std::vector<std::uint8_t> bytes_of(const std::string& text) {
   return bytes;
 }
 
-/// The numbers of a row that packed_numbers.hpp has packed.
+/// The numbers of a row packed by packed_numbers.hpp.
 template <class Number>
 std::vector<Number> numbers_of(const nlohmann::json& text) {
   const std::vector<std::uint8_t> bytes = bytes_of(text.get<std::string>());

@@ -7,7 +7,7 @@
 namespace qsmpc::testing {
 namespace {
 
-/// Position of the '>' that ends the tag at `begin`, quotes respected; npos if there is none.
+/// Position of the '>' that ends the tag at `begin`, respecting quotes; npos if there is none.
 std::size_t tag_end(const std::string& html, std::size_t begin) {
   bool quoted = false;
   for (std::size_t i = begin + 1; i < html.size(); ++i) {

@@ -1,12 +1,12 @@
-// What every page must hold to, for the tests of the report.
+// Checks that every page must pass, for the tests of the report.
 #pragma once
 
 #include <string>
 
 namespace qsmpc::testing {
 
-/// The first thing that is wrong with the tags of `html` (one that is closed without having been
-/// opened, or the other way round, or a bare '<' or quote); empty if they are in order.
+/// The first problem with the tags of `html` (a tag closed without having been opened or the
+/// reverse, or a bare '<' or quote); empty if there is none.
 [[nodiscard]] std::string tag_problem(const std::string& html);
 
 /// Whether `part` occurs in `text`; unlike a matcher, it does not print a whole page on failure.

@@ -16,7 +16,7 @@ namespace tradeoff_charts_test {
 
 static_assert(kMostFamilies <= kPaletteSize, "each family has a colour of its own");
 
-/// Of 100 drives, some unsafe and some out of time.
+/// 100 drives, some unsafe and some timed out.
 VariantStatistics variant(const std::string& settings, int unsafe, int timeouts) {
   VariantTally tally;
   for (int n = 0; n < 100; ++n) {

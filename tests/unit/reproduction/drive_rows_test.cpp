@@ -1,4 +1,4 @@
-// Rows and claims from drives: medians, shares, and differences of the same seeds.
+// Rows and claims from drives: medians, shares, and differences for the same seeds.
 
 #include "harness/reproduction/drive_rows.hpp"
 
@@ -109,7 +109,7 @@ TEST(FallsWithinNoise, forgives_a_rise_that_chance_explains) {
   EXPECT_TRUE(falls_within_noise("", {{5.0, 6.0}, {3.0, 2.0}, {1.0, 1.5}}).holds);
   // A mean rise of 0.5 with a standard error of 1.5.
   EXPECT_TRUE(falls_within_noise("", {{1.0, 1.0}, {3.0, 0.0}}).holds);
-  // The same rise in every episode.
+  // The same increase in every episode.
   EXPECT_FALSE(falls_within_noise("", {{1.0, 1.0}, {1.5, 1.5001}}).holds);
 }
 
@@ -118,7 +118,7 @@ TEST(SampleStatistics, are_those_of_the_sample) {
   EXPECT_DOUBLE_EQ(median_of({6.0, 1.0, 2.0}), 2.0);
   EXPECT_DOUBLE_EQ(median_of({6.0, 1.0, 2.0, 3.0}), 2.5);
   EXPECT_DOUBLE_EQ(largest_of({1.0, 6.0, 2.0}), 6.0);
-  // Deviation √7 of three numbers.
+  // The three numbers have standard deviation √7.
   EXPECT_DOUBLE_EQ(standard_error_of({1.0, 2.0, 6.0}), std::sqrt(7.0 / 3.0));
 }
 

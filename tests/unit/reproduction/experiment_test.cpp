@@ -1,4 +1,4 @@
-// The experiments by name, each done once with few drives; what they measure is in docs/results.md.
+// The experiments by name, each run once with few drives; docs/results.md says what they measure.
 
 #include "harness/reproduction/experiment.hpp"
 
@@ -70,7 +70,7 @@ bool is_about(const ResultRow& row, const std::string& what) {
                         row.place->row.find(what) != std::string::npos));
 }
 
-/// Whether the number can be what its row says that it is.
+/// Checks that the number is possible for its kind of row.
 void expect_possible(const ResultRow& row) {
   EXPECT_TRUE(std::isfinite(row.here)) << row.quantity;
   EXPECT_GE(row.here, 0.0) << row.quantity;
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Thesis, EveryExperiment, ::testing::ValuesIn(all_names(
                            return name;
                          });
 
-/// The row of that kind and column in a table of the thesis's own shape.
+/// The number in this row and column of a table in the thesis's own format.
 double number_of(const ExperimentResult& result, const std::string& row,
                  const std::string& column) {
   for (const ResultRow& each : result.rows) {
@@ -130,13 +130,14 @@ TEST(Experiments, of_five_steps_count_points_and_lose_the_spread_as_compressions
   const std::string all = "nothing compressed";
   const std::string soft = "the thesis’s soft compression";
   const std::string mixture = "this program’s mixture";
-  // A hundred points, and eight of the noise in each of five steps.
+  // A hundred points, times eight noise points in each of five steps.
   EXPECT_EQ(number_of(steps, "points", all), 100.0 * std::pow(8.0, 5.0));
   const double everything = number_of(steps, "variance over the true one", all);
   for (const std::string& compressed : {soft, std::string("hard compression"), mixture}) {
     EXPECT_EQ(number_of(steps, "points", compressed), 100.0) << compressed;
     EXPECT_LT(number_of(steps, "distance of the mean from the true one", compressed), 0.01);
-    // Means of groups vary less than what is grouped; a mixture keeps what its points stand for.
+    // Group means vary less than the grouped points; a mixture keeps the variance its points stand
+    // for.
     const double kept = number_of(steps, "variance over the true one", compressed);
     if (compressed == mixture) {
       EXPECT_NEAR(kept, 1.0, 0.05);
@@ -147,7 +148,7 @@ TEST(Experiments, of_five_steps_count_points_and_lose_the_spread_as_compressions
   EXPECT_LT(number_of(steps, "variance over the true one", soft), 0.5 * everything);
 }
 
-/// With --slow as `qsmpc reproduce` does them, else few and short.
+/// With --slow as `qsmpc reproduce` runs them, otherwise few and short.
 bool slow() { return by_effort(false, false, true); }
 
 LaboratoryOptions options_of_claims() {

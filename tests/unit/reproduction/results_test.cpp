@@ -1,4 +1,4 @@
-// What a reproduction looks like as text: nothing is lost, nothing breaks a format.
+// A reproduction as text: nothing is lost, and no content breaks a format.
 
 #include <limits>
 #include <sstream>
@@ -100,7 +100,7 @@ TEST(ResultsTable, lines_up_whatever_characters_a_name_has) {
   const std::string text = results_table(all);
   const std::string first = text.substr(text.find("  W2²"));
   const std::string second = text.substr(text.find("  W22"));
-  // "²" takes two bytes and one column.
+  // "²" takes two bytes but one column.
   EXPECT_EQ(first.find('\n'), second.find('\n') + 1);
 }
 
@@ -113,7 +113,7 @@ TEST(ResultsMarkdown, has_as_many_cells_in_every_row) {
   EXPECT_THAT(text, HasSubstr("| this does not | **no** |"));
 }
 
-/// With a table of two steps, and a row that has no place in it.
+/// With a table of two steps, and a row outside of it.
 Reproduction tabular() {
   ExperimentResult experiment{.name = "table-5-1", .title = "quality"};
   for (const int step : {0, 1}) {

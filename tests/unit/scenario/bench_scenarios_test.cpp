@@ -1,4 +1,4 @@
-// The scenarios that scripts/bench-ocp times are files that the program accepts.
+// The program accepts the scenario files timed by scripts/bench-ocp.
 #include <filesystem>
 
 #include <gtest/gtest.h>

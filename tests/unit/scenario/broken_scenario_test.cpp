@@ -1,4 +1,4 @@
-// Every way in which a scenario can be wrong is refused with file, line, key, found and expected.
+// Every error in a scenario is reported with file, line, key, found and expected.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ struct Broken {
   std::string expected;  ///< a piece of it
 };
 
-// `more` stands after the five lines of minimal_text, from line 6.
+// `more` follows the five lines of minimal_text, starting at line 6.
 Broken after_minimal(std::string name, const std::string& more, int line, std::string key,
                      std::string found, std::string expected) {
   return {std::move(name), minimal_text + more, line,

@@ -1,4 +1,4 @@
-// Certificates that are no bounds, and what is said of them before the first period.
+// Certificates that are not bounds, and the warnings before the first period.
 #include "harness/scenario/certificate_scope.hpp"
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ TEST(CertificateScope, depends_on_what_the_policy_does) {
   EXPECT_EQ(why_no_bound(minimal_with({noisy, "controller.feedback_gain=[0, 0, 0]"})), "");
   EXPECT_NE(why_no_bound(minimal_with({noisy, "controller.feedback_gain=[0, 0, 1]"})), "");
   EXPECT_NE(why_no_bound(minimal_with({noisy, "controller.kind=lqr"})), "");
-  // A tube has feedback whatever the policy is called, and what a shield is about may have.
+  // A tube has feedback whatever its policy, and the controller inside a shield may have it.
   for (const char* kind : {"tube", "shield"}) {
     EXPECT_NE(why_no_bound(minimal_with(
                   {noisy, "controller.policy=open_loop", std::string("controller.kind=") + kind})),
@@ -46,7 +46,7 @@ TEST(ScenarioWarnings, question_angles_that_look_like_degrees) {
                           "radians; 90 degrees are 1.571"));
   EXPECT_THAT(scenario_warnings(minimal_with({"target.state=[5, 0, -45]"})),
               ElementsAre(HasSubstr("target.state: heading = -45")));
-  // Whole turns and less are angles; a place of 90 m is one.
+  // Up to whole turns a number counts as an angle; a position of 90 m is fine.
   EXPECT_THAT(scenario_warnings(minimal_with({"initial_state.mean=[90, 0, 6.28]"})), IsEmpty());
 }
 

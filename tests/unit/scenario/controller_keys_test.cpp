@@ -1,5 +1,4 @@
-// The keys of the controller and the estimator: names, defaults that depend on others, writing
-// back.
+// The keys of the controller and the estimator: names, dependent defaults, writing back.
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,7 +42,7 @@ TEST(ControllerKeys, every_controller_and_estimator_can_be_named) {
   expect_round_trip(noisy);
 }
 
-// These do not go with an open loop, or with another solver, as the text above has them.
+// These are incompatible with the open loop or the solver of the text above.
 TEST(ControllerKeys, gains_can_be_optimised_and_another_solver_be_named) {
   const Scenario gains = minimal_with({"controller.optimise_gain=true"});
   EXPECT_TRUE(gains.controller.optimise_gain);
@@ -104,7 +103,7 @@ TEST(ControllerKeys, of_chance_constraints_and_the_shield_are_refused_where_they
     EXPECT_EQ(refusal_of(minimal_text, {std::string("controller.kind=") + kind, written}).key,
               written.substr(0, written.find('=')));
   }
-  // A default stands in resolved scenarios of other controllers, too.
+  // Resolved scenarios of other controllers contain the default as well.
   EXPECT_NO_THROW(minimal_with(
       {"controller.kind=cone",
        "controller.chance.radius=" + std::to_string(controller::ChanceSettings{}.radius)}));
@@ -168,7 +167,7 @@ TEST(ControllerKeys, penalties_weigh_nothing_by_default_where_limits_of_the_risk
   EXPECT_EQ(weights({}), usual);
   EXPECT_EQ(weights({"risk.plan=0.02"}), std::pair(0.0, 0.0));
   EXPECT_EQ(weights({"risk.mission=0.02"}), std::pair(0.0, 0.0));
-  // These know no limits, and would drive into everything.
+  // These controllers ignore limits and would drive into everything.
   EXPECT_EQ(weights({"risk.plan=0.02", "controller.kind=nominal"}), usual);
   EXPECT_EQ(weights({"risk.plan=0.02", "controller.kind=lqr"}), usual);
   EXPECT_EQ(weights({"risk.plan=0.02", "controller.penalty.box=7"}), std::pair(7.0, 0.0));
@@ -188,7 +187,7 @@ TEST(ControllerKeys, a_deadline_is_written_unless_there_is_none) {
 
 TEST(ControllerKeys, every_propagator_of_noise_and_every_quantiser_can_be_named) {
   for (const controller::PropagatorEntry& entry : controller::propagators()) {
-    if (entry.name == "noise_free") continue;  // it is propagate_noise: false
+    if (entry.name == "noise_free") continue;  // it is set by propagate_noise: false
     const Scenario scenario = minimal_with({"controller.propagator=" + entry.name});
     EXPECT_EQ(scenario.controller.propagator, entry.name);
     expect_round_trip(scenario);

@@ -1,4 +1,4 @@
-// Files made to break the reader: each ends in a scenario or in an InputError, and soon.
+// Files designed to break the reader: each gives a scenario or an InputError, quickly.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(HostileFile, noise_below_the_limit_is_refused) {
   EXPECT_EQ(refusal_of(noise).expected, "a YAML file in UTF-8");
 }
 
-// A mebibyte of each piece that makes a parser nest, back up or collect.
+// One mebibyte of each piece that makes a parser nest, backtrack or accumulate.
 TEST(HostileFile, a_mebibyte_of_any_syntax_ends_without_harm) {
   for (const std::string piece :
        {"[",           "{",          "]",        "}",     "- ",       "? ",    ": ",      "a: ",
@@ -107,7 +107,7 @@ TEST(HostileFile, a_damaged_file_is_loaded_or_refused_and_nothing_else) {
     const std::string text = mutated(texts[static_cast<std::size_t>(i) % texts.size()], random);
     try {
       const Scenario scenario = parse_scenario(text);
-      // What is accepted can be written, and is accepted again.
+      // An accepted scenario can be written, and is accepted again.
       EXPECT_EQ(to_yaml(parse_scenario(to_yaml(scenario))), to_yaml(scenario)) << text;
       ++loaded;
     } catch (const InputError& error) {
@@ -117,7 +117,7 @@ TEST(HostileFile, a_damaged_file_is_loaded_or_refused_and_nothing_else) {
       FAIL() << error.what() << "\n" << text;
     }
   }
-  // Both happen often, or the damage is too mild or too wild to test anything.
+  // Both outcomes are frequent; otherwise the damage is too mild or too severe to test anything.
   EXPECT_GT(loaded, 200);
   EXPECT_GT(refused, 1000);
 }

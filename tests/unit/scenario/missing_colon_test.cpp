@@ -1,4 +1,4 @@
-// A colon that is missing is told at its own line, not where the parser stumbles.
+// A missing colon is reported at its own line, not where the parser fails.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

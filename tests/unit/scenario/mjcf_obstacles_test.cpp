@@ -16,7 +16,7 @@ namespace mjcf_obstacles_test {
 using ::testing::HasSubstr;
 
 constexpr double kRounding = 1e-9;
-constexpr double kFloat = 1e-6;  // vertices of meshes are stored as float
+constexpr double kFloat = 1e-6;  // mesh vertices are stored as float
 
 const std::string yard = R"(<mujoco>
   <asset><mesh name="wedge" vertex="0 0 0  1 0 0  0 1 0  0 0 1"/></asset>
@@ -46,7 +46,7 @@ const std::string yard = R"(<mujoco>
 </mujoco>
 )";
 
-// A scenario that is driven on the model itself, beside the yard.
+// A scenario driven on the model itself, beside the yard.
 struct Yard {
   explicit Yard(const std::string& obstacles)
       : mjcf(folder.file("yard.xml", yard)),
@@ -88,7 +88,7 @@ Eigen::Matrix2Xd polygon_of(const std::string& name) {
 TEST(GroundGeoms, of_upright_bodies_are_exact) {
   const auto crate = std::get<controller::TurnedBoxShape>(*geom_called("crate").shape);
   EXPECT_TRUE(crate.centre.isApprox(Eigen::Vector2d(7, 4), kRounding));
-  // Which of its axes is the first is not said.
+  // The order of its axes is unspecified.
   const bool swapped = crate.size.x() < crate.size.y();
   EXPECT_NEAR(crate.size.maxCoeff(), 2.0, kRounding);
   EXPECT_NEAR(crate.size.minCoeff(), 1.0, kRounding);
@@ -114,7 +114,7 @@ TEST(GroundGeoms, of_a_tilted_ellipsoid_are_an_exact_ellipse) {
   EXPECT_NEAR(std::sin(egg.angle), 0.0, kRounding);
 }
 
-// Lengths of the shadow along x and y, and how much more than them it may be.
+// Extents of the shadow along x and y, and the tolerance above them.
 void expect_extent(const Eigen::Matrix2Xd& corners, const Eigen::Vector2d& lower,
                    const Eigen::Vector2d& upper, double beyond) {
   const Eigen::Vector2d least = corners.rowwise().minCoeff();
@@ -131,7 +131,7 @@ TEST(GroundGeoms, of_leaning_bodies_are_polygons_about_them) {
   const Eigen::Matrix2Xd leaning = polygon_of("leaning");
   EXPECT_LE(leaning.cols(), 6);
   expect_extent(leaning, {20 - half, 3}, {20 + half, 5}, kFloat);
-  constexpr double kOfSides = 1e-3;  // of a size of 1 m, 96 sides
+  constexpr double kOfSides = 1e-3;  // for a size of 1 m, with 96 sides
   const Eigen::Matrix2Xd log = polygon_of("log");
   expect_extent(log, {8, 4.8}, {10, 5.2}, kOfSides);
   const Eigen::Matrix2Xd pill = polygon_of("pill");

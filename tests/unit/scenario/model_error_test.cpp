@@ -1,4 +1,4 @@
-// The key `model_error` and files of its keys.
+// The key `model_error`, and files with its keys.
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -34,7 +34,7 @@ const std::string drive_text = whole_text +
                                "    norm8: [0.05, 0.05, 0.01]\n"
                                "    radius: 0.06\n";
 
-/// Each line of `text` further to the right, as what a key holds.
+/// `text` with each line indented, as the value of a key.
 std::string indented(const std::string& text) {
   std::string out = "  ";
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -115,7 +115,7 @@ TEST(ModelErrorKey, names_a_file_beside_the_scenario) {
   (void)folder.file("error.yaml", model_error_yaml({error}, "dubins", "from 3 episodes"));
   const std::string path = folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
   expect_same(load_scenario(path).model_error.value(), error);
-  // The resolved scenario needs the file no longer.
+  // The resolved scenario no longer needs the file.
   expect_same(parse_scenario(to_yaml(load_scenario(path))).model_error.value(), error);
   const std::string absolute = "model_error=" + (folder / "error.yaml");
   expect_same(load_scenario(path, {absolute}).model_error.value(), error);
@@ -157,13 +157,12 @@ TEST(ModelErrorKey, problems_of_its_file_are_told_with_its_name_and_line) {
   EXPECT_EQ(problems[1].line, 3);
   EXPECT_EQ(problems[1].key, "norm4");
   EXPECT_THAT(problems[1].found, HasSubstr("0.01 as number 3"));
-  // A file that is no YAML at all is a problem like any other.
+  // A file that is not YAML is an error like any other.
   (void)folder.file("error.yaml", "rms: [1, 2\n");
   EXPECT_EQ(validate_scenario_file(path).at(0).file, folder / "error.yaml");
 }
 
-/// An error file that was measured with the scenario of `overrides`, beside a scenario that names
-/// it.
+/// An error file measured with the scenario of `overrides`, beside a scenario that names it.
 std::string scenario_with_error_of(const TemporaryFolder& folder,
                                    const std::vector<std::string>& overrides) {
   (void)folder.file("error.yaml", model_error_yaml({loaded("rms: [0.1, 0.1, 0.1]\n"),

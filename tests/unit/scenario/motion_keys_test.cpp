@@ -1,4 +1,4 @@
-// Obstacles that move: read, refused with where and why, written back.
+// Moving obstacles: read, refused with place and reason, written back.
 #include "harness/scenario/keys/motion_keys.hpp"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace motion_keys_test {
 
 using ::testing::HasSubstr;
 
-// Line 6 is the safe set's, 8 the first obstacle's.
+// Line 6 is the safe set, line 8 the first obstacle.
 std::string with_obstacles(const std::string& lines) {
   return minimal_text + "safe_set:\n  obstacles:\n" + lines;
 }

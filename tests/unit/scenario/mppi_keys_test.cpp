@@ -1,4 +1,4 @@
-// The keys of controllers that sample: read, written, and refused where they would do nothing.
+// The keys of sampling controllers: read, written, and refused where they have no effect.
 #include <string>
 #include <vector>
 
@@ -17,7 +17,7 @@ using controller::MppiSettings;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Every key with a value that is not the default's, and whether a kind has a use for it.
+/// Every key with a non-default value, and whether a kind uses it.
 struct Entry {
   std::string key;
   std::string value;

@@ -1,4 +1,4 @@
-// Obstacles in files of their own: lists as in the scenario, and GeoJSON.
+// Obstacles in separate files: lists as in the scenario, and GeoJSON.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 
 const std::string from_shapes = minimal_text + "safe_set:\n  obstacles_from_file: shapes.json\n";
 
-// A scenario beside the file shapes.json with `text` in it.
+// A scenario beside the file shapes.json with the contents `text`.
 struct FileBeside {
   explicit FileBeside(const std::string& text)
       : shapes(folder.file("shapes.json", text)), scenario(folder.file("s.yaml", from_shapes)) {}

@@ -1,5 +1,5 @@
-// The keys of controllers that are no part of the program: where their paths begin, what is
-// refused, and that options are written back as they were read.
+// The keys of external controllers: the base of their paths, refusals, and options that are written
+// back as read.
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// What `--set KEY=VALUE` does to a scenario.
+// The effect of `--set KEY=VALUE` on a scenario.
 #include "harness/scenario/overrides.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Systems of a user's in scenario files: read, refused with where and why, and written back.
+// User-defined systems in scenario files: read, refused with place and reason, and written back.
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -202,13 +202,13 @@ TEST(OwnModel, of_doubles_alone_plans_by_differences_and_has_no_certificates) {
   Eigen::MatrixXd by_state(2, 2);
   Eigen::MatrixXd by_input(2, 1);
   dynamics->jacobians(Eigen::Vector2d(3.0, -2.0), Eigen::VectorXd::Ones(1), by_state, by_input);
-  // Differences of a linear step: rounding over 2 · 6e-6.
+  // Differences of a linear step: rounding divided by 2 · 6e-6.
   EXPECT_NEAR(by_state(0, 1), 0.1, 1e-9);
   EXPECT_NEAR(by_input(1, 0), 0.05, 1e-9);
   EXPECT_EQ(dynamics->derivative_bounds(Eigen::Vector3d::Zero(), Eigen::Vector3d::Ones())
                 .jacobian_upper(0, 0),
             std::numeric_limits<double>::infinity());
-  // What a file records of it says so, too.
+  // The recorded scenario says so as well.
   const Scenario recorded = parse_scenario(to_yaml(scenario), {.files_must_exist = false});
   EXPECT_THAT(why_no_bound(recorded), HasSubstr("without derivatives"));
 }

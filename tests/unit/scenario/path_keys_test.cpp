@@ -1,4 +1,4 @@
-// Paths to be followed, in the scenario and in files of their own, and the roads that they make.
+// Paths to follow, in the scenario and in separate files, and the roads made from them.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -31,7 +31,7 @@ Scenario following(const std::string& target) {
   return scenario;
 }
 
-/// A scenario beside the file path.csv with `text` in it.
+/// A scenario beside the file path.csv with the contents `text`.
 struct PathBeside {
   explicit PathBeside(const std::string& text, const std::string& more = "")
       : path(folder.file("path.csv", text)),
@@ -138,7 +138,7 @@ TEST(PathKeys, roads_that_cannot_be_are_told) {
     eight += fmt::format("{},{},1,1\n", 30.0 * std::sin(angle), 15.0 * std::sin(2.0 * angle));
   }
   EXPECT_THAT(PathBeside(eight).refusal().found, HasSubstr("edges that meet near"));
-  // Without widths it may cross itself.
+  // A path without widths may cross itself.
   std::string line;
   for (int i = 0; i < 40; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / 40;

@@ -1,4 +1,4 @@
-// What the scenario tests share: a short valid scenario.
+// Shared by the scenario tests: a short valid scenario.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace qsmpc::harness {
 
-/// The least that is a scenario: lines 1 to 5. Tests put more lines after it.
+/// The smallest scenario: lines 1 to 5. Tests append lines.
 inline const std::string minimal_text =
     "name: test\n"
     "model: {system: dubins}\n"
@@ -23,12 +23,12 @@ inline const std::string minimal_text =
     "initial_state: {mean: [0, 0, 0]}\n"
     "target: {state: [5, 0, 0]}\n";
 
-/// It, as `--set` changes it.
+/// The minimal scenario, changed as by `--set`.
 inline Scenario minimal_with(const std::vector<std::string>& overrides) {
   return parse_scenario(minimal_text, {.file = "t.yaml", .overrides = overrides});
 }
 
-/// What `parse_scenario` says is wrong; fails the test if it says nothing.
+/// The problem that `parse_scenario` reports; fails the test if there is none.
 inline InputError::Where refusal_of(const std::string& text,
                                     const std::vector<std::string>& overrides = {}) {
   try {

@@ -1,4 +1,4 @@
-// What is written back as YAML is what was read: value by value, then byte by byte.
+// A scenario written as YAML reads back the same: value by value, then byte by byte.
 #pragma once
 
 #include <cstddef>

@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// 0.2 m and two standard deviations from a wall.
+/// 0.2 m and two standard deviations away from a wall.
 Scenario at_a_wall(const std::string& rest) {
   return parse_scenario(
       "name: wall\nmodel: {system: dubins, speed: 1.5}\nplant: {kind: analytic, mjcf: \"\"}\n"
@@ -45,7 +45,7 @@ TEST(ScenarioWarnings, count_the_body) {
 TEST(ScenarioWarnings, say_that_no_certificate_is_0) {
   EXPECT_THAT(scenario_warnings(at_a_wall(std::string(kWall) + "risk: {plan: 0}\n")),
               ElementsAre(HasSubstr("risk.plan is 0")));
-  // Nothing is unsafe: it is 0.
+  // Nothing is unsafe: the risk is 0.
   EXPECT_THAT(scenario_warnings(at_a_wall("risk: {plan: 0}\n")), IsEmpty());
 }
 

@@ -1,4 +1,4 @@
-// The JSON Schema takes what the reader takes: the same keys, defaults and ranges.
+// The JSON Schema accepts what the reader accepts: the same keys, defaults and ranges.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -22,10 +22,10 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using Json = nlohmann::ordered_json;
 
-// As `qsmpc schema` prints it, read again.
+// As printed by `qsmpc schema`, parsed again.
 Json printed(const Json& schema) { return Json::parse(json_text(schema)); }
 
-// Without a line for the plant, so that it has its default, too.
+// Without a plant, so that it has its default as well.
 std::string least_text() {
   std::string text = minimal_text;
   const std::string plant = "plant: {kind: analytic, mjcf: \"\"}\n";
@@ -63,7 +63,7 @@ TEST(ScenarioSchema, has_every_key_of_every_resolved_scenario) {
   EXPECT_THAT(unknown, ::testing::ElementsAre("wrong.controller.horzon"));
 }
 
-// The schemas of single values, with the dotted paths of their keys.
+// The schemas of scalar values, with the dotted paths of their keys.
 void collect_values(const Json& schema, const std::string& path,
                     std::vector<std::pair<std::string, Json>>& values) {
   if (!schema.contains("properties")) {
@@ -102,7 +102,7 @@ TEST(ScenarioSchema, has_the_defaults_that_the_reader_fills_in) {
   EXPECT_GT(compared, 25);
 }
 
-// Settings under which the key has an effect: others would refuse it for what it is.
+// Settings under which the key has an effect; otherwise it would be refused as unused.
 std::vector<std::string> settings_of(const std::string& path) {
   if (path.starts_with("controller.mppi.")) return {"controller.kind=risk_mppi"};
   if (path.starts_with("controller.shield.")) return {"controller.kind=shield"};
@@ -117,7 +117,7 @@ std::vector<std::string> settings_of(const std::string& path) {
   return {};
 }
 
-// What is wrong with the least scenario that has `value` at `path`; empty if nothing is.
+// The error of the smallest scenario with `value` at `path`; empty if there is none.
 std::string refusal_with(const std::string& path, const std::string& value) {
   std::vector<std::string> overrides = settings_of(path);
   overrides.push_back(path + "=" + value);
@@ -132,8 +132,8 @@ std::string refusal_with(const std::string& path, const std::string& value) {
 TEST(ScenarioSchema, has_the_ranges_that_the_reader_holds_values_to) {
   int compared = 0;
   for (const auto& [path, schema] : values_of(printed(scenario_schema()))) {
-    // A constant's range is its system's matter, as is the speed on a path of one that has a single
-    // speed, and which groups there are the model file's; the others are parts of mappings with
+    // The range of a constant depends on its system, the speed on a path on whether the system has
+    // a single speed, and the valid groups on the model file; the others are parts of mappings with
     // more keys.
     const bool stands_alone = !path.starts_with("model.") && !path.starts_with("model_error.") &&
                               path != "target.speed" &&
@@ -158,7 +158,7 @@ TEST(ScenarioSchema, has_the_ranges_that_the_reader_holds_values_to) {
   EXPECT_GE(compared, 33);
 }
 
-// The keys that an error for an unknown one lists.
+// The keys listed by the error for an unknown one.
 std::vector<std::string> listed_keys(const std::string& expected) {
   std::vector<std::string> keys;
   std::string rest = expected.substr(std::string("one of ").size());

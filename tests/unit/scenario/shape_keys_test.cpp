@@ -1,5 +1,4 @@
-// Obstacles that are shapes of the plane of position: read, refused with where and why, written
-// back.
+// Planar obstacles in the plane of position: read, refused with place and reason, written back.
 #include "harness/scenario/keys/shape_keys.hpp"
 
 #include <gmock/gmock.h>
@@ -13,7 +12,7 @@ namespace shape_keys_test {
 
 using ::testing::HasSubstr;
 
-// Line 6 is the safe set's, 8 the first obstacle's.
+// Line 6 is the safe set, line 8 the first obstacle.
 std::string with_obstacles(const std::string& lines) {
   return minimal_text + "safe_set:\n  obstacles:\n" + lines;
 }
@@ -74,7 +73,7 @@ TEST(Shapes, are_changed_by_set) {
   EXPECT_EQ(std::get<controller::DiscShape>(*obstacles[6].shape()).centre, Eigen::Vector2d(0, 9));
 }
 
-// `obstacle` is at line 8; line 4 has the start and line 5 the target.
+// `obstacle` is at line 8; line 4 is the start and line 5 the target.
 struct BrokenShape {
   std::string name;
   std::string obstacle;

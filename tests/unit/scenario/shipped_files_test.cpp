@@ -9,7 +9,7 @@
 namespace qsmpc::harness {
 namespace shipped_files_test {
 
-// QSMPC_MODELS for as long as it lives.
+// Sets QSMPC_MODELS during its lifetime.
 class ModelsVariable {
  public:
   explicit ModelsVariable(const std::string& value) {

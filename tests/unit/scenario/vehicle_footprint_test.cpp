@@ -19,7 +19,7 @@ namespace vehicle_footprint_test {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// What sweeps, 1e-4 of the outline's length, and whole millimetres add to it.
+/// Added to the outline by sweeps (1e-4 of its length) and by rounding to whole millimetres.
 constexpr double kSlack = 1.6e-3;  // m
 
 Scenario scenario_with(const std::string& system, const std::string& vehicle,
@@ -35,7 +35,8 @@ std::vector<controller::Disc> discs_of(const std::string& vehicle,
   return scenario_with("dubins", vehicle, more).safe_set.body.discs;
 }
 
-// By hand from the files: the outline, and with n discs along L the radius hypot(L/2n, W/2).
+// Computed by hand from the files: the outline, and with n discs along L the radius hypot(L/2n,
+// W/2).
 struct ShippedBody {
   std::string name;
   std::string system;
@@ -76,11 +77,11 @@ TEST_P(ShippedFootprint, is_of_discs_about_the_outline_of_the_geoms) {
 INSTANTIATE_TEST_SUITE_P(
     Files, ShippedFootprint,
     ::testing::Values(
-        // Behind, the wing: 0.080 + 0.028 cos 0.12 + 0.004 sin 0.12. In front, the bumper. Beside,
-        // a front wheel at 0.7 rad: 0.11 + 0.06 sin 0.7 + 0.022 cos 0.7.
+        // Rear: the wing, 0.080 + 0.028 cos 0.12 + 0.004 sin 0.12. Front: the bumper. Sides: a
+        // front wheel at 0.7 rad, 0.11 + 0.06 sin 0.7 + 0.022 cos 0.7.
         ShippedBody{"dubins_car", "dubins", "dubins_car.xml", {-0.1083, 0.414, -0.1655, 0.1655}, 2},
         ShippedBody{"dubins_planar", "dubins", "dubins_planar.xml", {-0.09, 0.40, -0.12, 0.12}, 3},
-        // Behind, the tail lamps. Beside, a front wheel at 1.2 rad: 0.76 + 0.32 sin 1.2 + 0.11 cos
+        // Rear: the tail lamps. Sides: a front wheel at 1.2 rad, 0.76 + 0.32 sin 1.2 + 0.11 cos
         // 1.2.
         ShippedBody{"bicycle_car", "bicycle", "bicycle_car.xml", {-2.62, 1.9, -1.0981, 1.0981}, 3},
         ShippedBody{"bicycle_planar", "bicycle", "bicycle_planar.xml", {-2.6, 1.9, -0.88, 0.88}, 4},
@@ -107,7 +108,7 @@ TEST(CoveringDiscs, leave_no_place_of_the_outline_free) {
   }
 }
 
-/// A body at (1, 2) that heads along y, with what `parts` puts on it.
+/// A body at (1, 2) heading along y, carrying `parts`.
 std::string vehicle_file(const TemporaryFolder& folder, const std::string& parts) {
   const std::string path = folder / "own.xml";
   std::ofstream(path) << R"(<mujoco><compiler angle="radian" autolimits="true"/><worldbody>
@@ -142,8 +143,9 @@ TEST(VehicleOutline, is_in_the_vehicles_own_frame) {
 }
 
 TEST(VehicleOutline, holds_what_its_parts_can_reach) {
-  // A bar of 0.6 m on a hinge 0.3 m ahead: free it goes all round; with limits from -0.5 to 0.5 rad
-  // it reaches 0.3 + 0.6 ahead and 0.6 sin 0.5 aside; on a slide it goes ahead as far as that.
+  // A bar of 0.6 m on a hinge 0.3 m ahead: without limits it turns all the way round; with limits
+  // from -0.5 to 0.5 rad it reaches 0.3 + 0.6 ahead and 0.6 sin 0.5 sideways; on a slide it moves
+  // ahead within those limits.
   const auto bar = [](const std::string& joint) {
     return R"(<body pos="0.3 0 0"><joint )" + joint +
            R"(/><geom type="box" pos="0.3 0 0" size="0.3 0.0001 0.01" mass="1"/></body>)";

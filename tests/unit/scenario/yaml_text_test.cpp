@@ -12,7 +12,7 @@
 namespace qsmpc::harness {
 namespace yaml_text_test {
 
-// Plain text that is neither a number nor true or false may come back quoted.
+// Plain text other than numbers, true and false may come back quoted.
 void expect_same(const YamlNode& a, const YamlNode& b) {
   ASSERT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.text, b.text);
@@ -85,7 +85,7 @@ TEST(YamlFlow, is_what_follows_the_equals_sign_of_an_override) {
   }
 }
 
-// As files write them, in block style too, where more is plain than in flow style.
+// As written in files, including block style, where more scalars are plain than in flow style.
 TEST(YamlFlow, keeps_what_a_file_says) {
   for (const std::string text :
        {"a: 1\nb: [x, 'y', \"z\"]\nc: {}\nd: []\ne:\nf: ~\n", "a: plain, with [commas] and words\n",

@@ -22,11 +22,11 @@ namespace splitting_test {
 
 using ::testing::ElementsAre;
 
-constexpr double kKept = 0.9;  // of a state, by the next one
+constexpr double kKept = 0.9;  // share of a state kept by the next one
 constexpr int kSteps = 10;
-constexpr double kEvent = 10.4;  // is an event above it
+constexpr double kEvent = 10.4;  // above it is the event
 
-/// x ← 0.9 x + w, w ~ N(0, 1), from 0, ended by its event.
+/// x ← 0.9 x + w, w ~ N(0, 1), from 0, stopped at its event.
 SplitPath walk(const PathSeeds& seeds) {
   SplitPath path;
   double x = 0.0;
@@ -41,8 +41,8 @@ SplitPath walk(const PathSeeds& seeds) {
   return path;
 }
 
-/// The probability that a walk has its event, by the recursion of the density of those that have
-/// not had it yet, on a fine grid (trapezoidal rule: smooth and fallen to 0 at one end, so that its
+/// The probability that a walk has its event, by recursion of the density of the walks without it
+/// so far, on a fine grid (trapezoidal rule: the density is smooth and vanishes at one end, so its
 /// error is far below the sampling errors here).
 double true_probability() {
   constexpr int kPoints = 700;
@@ -87,10 +87,10 @@ std::vector<double> estimates_of(const SplitSettings& settings, int runs) {
   return estimates;
 }
 
-// Five standard errors: a wrong alarm once in a million, were the seeds not fixed.
+// Five standard errors: a false alarm once in a million if the seeds were not fixed.
 void expect_unbiased(const std::vector<double>& estimates, double truth) {
   EXPECT_NEAR(mean_of(estimates), truth, 5.0 * standard_error_of(estimates));
-  // And the estimates are sharp enough for that to say something.
+  // And the estimates are accurate enough for this to be meaningful.
   EXPECT_LT(standard_error_of(estimates), 0.2 * truth);
 }
 
@@ -115,13 +115,13 @@ TEST(Splitting, has_limits_that_cover_the_truth) {
     const RateInterval interval = skewed_mean_interval({begin, begin + kRuns}, 0.005);
     if (truth < interval.lower || truth > interval.upper) ++missed;
   }
-  // Of 40 intervals of 99 %, more than three miss it once in a thousand times.
+  // More than three of 40 intervals at 99 % miss it once in a thousand runs.
   EXPECT_LE(missed, 3U);
 }
 
 TEST(Splitting, takes_a_small_part_of_what_plain_paths_take) {
   const SplitRun run = run_of({.particles = 100}, 1);
-  // Some thousand paths for an event that one path in a million has.
+  // A few thousand paths for an event of one path in a million.
   EXPECT_LT(run.paths, 3000);
   EXPECT_GT(run.probability, 0.0);
   EXPECT_EQ(run.first_events, 0);
@@ -166,7 +166,7 @@ TEST(Splitting, gives_the_share_of_the_first_paths_where_the_event_is_common) {
   EXPECT_DOUBLE_EQ(run->probability, 0.1 * static_cast<double>(run->first_events));
 }
 
-/// Levels that are whole numbers: many are the same.
+/// Integer levels: many are equal.
 SplitPath stairs(const PathSeeds& seeds) {
   SplitPath path{.levels = {-4.0}};
   for (std::uint64_t step = 0; step < 6 && path.levels.back() <= 0.0; ++step) {
@@ -191,7 +191,7 @@ TEST(Splitting, is_unbiased_where_levels_are_the_same) {
     extinct += run.extinct ? 1 : 0;
   }
   expect_unbiased(estimates, truth);
-  // Those without an estimate count as 0, and there are some.
+  // Runs without an estimate count as 0, and there are some.
   EXPECT_GT(extinct, 0);
   EXPECT_EQ(std::ranges::count(estimates, 0.0), extinct);
 }
@@ -207,7 +207,7 @@ TEST(Splitting, dies_out_where_no_path_comes_nearer) {
 }
 
 TEST(Splitting, estimates_the_mean_of_a_value_of_all_paths_without_bias) {
-  // How often a walk comes above 3, by plain paths; most of these have no event.
+  // How often a walk exceeds 3, by plain paths; most of these have no event.
   const auto above = [](const SplitPath& path) {
     return static_cast<double>(
         std::ranges::count_if(path.levels, [](double level) { return level > 3.0 - kEvent; }));

@@ -22,7 +22,8 @@ TEST(ClopperPearson, limits_are_where_the_count_becomes_as_improbable_as_the_tai
   for (const double tail : {0.05, 1e-6}) {
     for (const int events : {1, 7, 25, 49}) {
       const RateInterval limits = clopper_pearson(events, 50, tail);
-      // 1e-9: the inverse of the incomplete beta function and the sum above, both near rounding.
+      // 1e-9: the inverse incomplete beta function and the sum above are both close to rounding
+      // accuracy.
       EXPECT_NEAR(upper_tail(50, events, limits.lower) / tail, 1.0, 1e-9) << events;
       EXPECT_NEAR((1.0 - upper_tail(50, events + 1, limits.upper)) / tail, 1.0, 1e-6) << events;
     }

@@ -15,7 +15,7 @@ TEST(ConfidenceSequence, says_nothing_of_no_trial) {
 }
 
 TEST(ConfidenceSequence, limits_are_where_the_mixture_is_as_much_more_likely_as_the_level_says) {
-  // Without an event, M(p) = Γ(n + ½) / (Γ(½) n! (1 − p)ⁿ) in closed form: at the upper limit 1/α.
+  // Without an event, M(p) = Γ(n + ½) / (Γ(½) n! (1 − p)ⁿ) in closed form: 1/α at the upper limit.
   constexpr std::int64_t kTrials = 400;
   const RateInterval interval = confidence_sequence(0, kTrials, 0.99);
   const double mixture = std::lgamma(kTrials + 0.5) - std::lgamma(0.5) - std::lgamma(kTrials + 1.0);
@@ -26,7 +26,7 @@ TEST(ConfidenceSequence, limits_are_where_the_mixture_is_as_much_more_likely_as_
 TEST(ConfidenceSequence, is_symmetric_in_what_is_counted) {
   const RateInterval events = confidence_sequence(13, 400, 0.95);
   const RateInterval others = confidence_sequence(387, 400, 0.95);
-  // 1 − p cancels digits near 1.
+  // 1 − p loses digits near 1.
   EXPECT_NEAR(events.lower, 1.0 - others.upper, 1e-12);
   EXPECT_NEAR(events.upper, 1.0 - others.lower, 1e-12);
   EXPECT_EQ(confidence_sequence(400, 400, 0.95).upper, 1.0);

@@ -18,7 +18,7 @@ TEST(Exceedance, nothing_certified_and_nothing_happened_is_no_evidence) {
 
 TEST(Exceedance, an_event_that_was_certified_not_to_happen_is_proof) {
   EXPECT_EQ(exceedance_p_value({{.events = 1, .certified = 0.0}}), 0.0);
-  // One of two sequences is enough.
+  // One of the two sequences is enough.
   EXPECT_EQ(exceedance_p_value({{.events = 1, .certified = 0.0}, {.events = 0, .certified = 9.0}}),
             0.0);
 }
@@ -29,7 +29,7 @@ TEST(Exceedance, as_many_events_as_certified_are_no_evidence_and_many_more_are) 
   EXPECT_LT(exceedance_p_value({{.events = 1, .certified = 1e-6}}), 1e-3);
 }
 
-// Counts of many rare events are Poisson, and these are among what the p-value must hold for.
+// Counts of many rare events are Poisson, a case for which the p-value must hold.
 TEST(Exceedance, is_never_smaller_than_the_tail_of_a_poisson_count) {
   for (const double certified : {1e-6, 1e-3, 0.1, 1.0, 4.0}) {
     double below = 0.0;
@@ -44,7 +44,7 @@ TEST(Exceedance, is_never_smaller_than_the_tail_of_a_poisson_count) {
   }
 }
 
-// Certificates that depend on the past, and a sequence that ends at its first event.
+// Certificates that depend on the past, and a sequence that stops at its first event.
 TEST(Exceedance, rejects_valid_certificates_no_more_often_than_it_says) {
   int rejected = 0;
   constexpr int kRuns = 4000;

@@ -85,7 +85,7 @@ TEST(RankSelection, a_distribution_is_the_same_whether_its_values_are_kept_or_no
   EXPECT_EQ(kept.p95, selected.p95);
   EXPECT_EQ(kept.p99, selected.p99);
   EXPECT_EQ(kept.max, selected.max);
-  EXPECT_NEAR(kept.mean, selected.mean, 1e-12);  // summed in another order
+  EXPECT_NEAR(kept.mean, selected.mean, 1e-12);  // summed in a different order
 }
 
 }  // namespace rank_selection_test

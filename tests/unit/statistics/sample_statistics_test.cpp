@@ -8,11 +8,11 @@
 namespace qsmpc::harness {
 namespace sample_statistics_test {
 
-const std::vector<double> kSample{4.0, 1.0, 7.0, 2.0};  // mean 3.5, squares about it 21
+const std::vector<double> kSample{4.0, 1.0, 7.0, 2.0};  // mean 3.5, sum of squared deviations 21
 
 TEST(SampleStatistics, mean_of_shares_divides_before_it_sums) {
   EXPECT_DOUBLE_EQ(mean_of_shares(kSample), mean_of(kSample));
-  // The sum overflows, the shares do not.
+  // The sum overflows, the weighted terms do not.
   const std::vector<double> huge(2, 1.5e308);
   EXPECT_EQ(mean_of_shares(huge), 1.5e308);
   EXPECT_TRUE(std::isinf(mean_of(huge)));

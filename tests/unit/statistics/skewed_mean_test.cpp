@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace skewed_mean_test {
 
-/// exp(σ z), of which some are 0 instead.
+/// exp(σ z), some of them replaced by 0.
 std::vector<double> lognormal_sample(Eigen::Index count, double deviation, double zeros,
                                      std::uint64_t seed) {
   const Eigen::VectorXd z = models::standard_normal_sample(count, {.seed = seed});
@@ -24,7 +24,7 @@ std::vector<double> lognormal_sample(Eigen::Index count, double deviation, doubl
   return sample;
 }
 
-/// How many of `intervals` of 99 % miss the mean.
+/// How many of `intervals` intervals at 99 % miss the mean.
 int missed(Eigen::Index count, double deviation, double zeros, int intervals) {
   const double mean = (1.0 - zeros) * std::exp(0.5 * deviation * deviation);
   int missed = 0;
@@ -37,8 +37,8 @@ int missed(Eigen::Index count, double deviation, double zeros, int intervals) {
 }
 
 TEST(SkewedMean, covers_the_mean_of_a_lognormal_law) {
-  // Of 2000 intervals of 99 %, more than 35 miss it less than once in a thousand times. Student's t
-  // about the plain mean would miss it some 100 times.
+  // More than 35 of 2000 intervals at 99 % miss it in less than one of a thousand runs. Student's t
+  // about the plain mean would miss it about 100 times.
   for (const Eigen::Index count : {5, 20, 60}) {
     for (const double deviation : {0.3, 1.0, 1.5}) {
       EXPECT_LE(missed(count, deviation, 0.0, 2000), 35) << count << " of " << deviation;
@@ -51,7 +51,8 @@ TEST(SkewedMean, covers_it_where_some_are_zero) {
 }
 
 TEST(SkewedMean, is_of_a_useful_length) {
-  // Twenty numbers that differ by a factor of e: known within a factor of three or so.
+  // Twenty numbers with a log-deviation of one: the mean is known to within a factor of about
+  // three.
   const RateInterval interval = skewed_mean_interval(lognormal_sample(20, 1.0, 0.0, 1), 0.005);
   EXPECT_LT(interval.upper / interval.lower, 20.0);
   EXPECT_GT(interval.lower, 0.0);

@@ -17,7 +17,7 @@ TEST(EscapeHtml, text_of_any_script_is_kept) {
 
 TEST(EscapeHtml, bytes_that_are_no_utf8_are_replaced_one_by_one) {
   EXPECT_EQ(escape_html("a\xFFz"), "a\xEF\xBF\xBDz");
-  EXPECT_EQ(escape_html("\xC3"), "\xEF\xBF\xBD");                                  // cut off
+  EXPECT_EQ(escape_html("\xC3"), "\xEF\xBF\xBD");                                  // truncated
   EXPECT_EQ(escape_html("\xC0\xBC"), "\xEF\xBF\xBD\xEF\xBF\xBD");                  // overlong '<'
   EXPECT_EQ(escape_html("\xED\xA0\x80"), "\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD");  // surrogate
 }

@@ -35,7 +35,7 @@ TEST(Utf8Length, is_zero_where_no_character_is_well_formed) {
         "\xF0\x8F\xBF\xBF"s,                                // overlong
         "\xED\xA0\x80"s, "\xED\xBF\xBF"s,                   // surrogates
         "\xF4\x90\x80\x80"s, "\xF5\x80\x80\x80"s, "\xFF"s,  // above U+10FFFF
-        "\xC3"s, "\xE2\x82"s, "\xF0\x9F\x9A"s,              // cut off
+        "\xC3"s, "\xE2\x82"s, "\xF0\x9F\x9A"s,              // truncated
         "\xC3z"s, "\xE2\x82z"s, "\xF0\x9F\x9Az"s}) {
     EXPECT_EQ(utf8_length(text), 0U) << ::testing::PrintToString(text);
   }

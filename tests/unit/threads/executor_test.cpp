@@ -32,7 +32,7 @@ TEST(Executor, runs_every_task_exactly_once) {
 TEST(Executor, has_ended_every_task_when_it_returns) {
   const controller::Executor run = executor_of(5);
   for (int round = 0; round < 200; ++round) {
-    std::vector<int> squares(100);  // not atomic: read after all are written
+    std::vector<int> squares(100);  // not atomic: read after all writes
     run(100, [&](int n) { squares[static_cast<std::size_t>(n)] = n * n; });
     EXPECT_EQ(std::accumulate(squares.begin(), squares.end(), 0), 328350);  // 99·100·199/6
   }
@@ -72,7 +72,7 @@ TEST(Executor, a_copy_outlives_the_original) {
   EXPECT_EQ(sum, 4950);
 }
 
-// Tasks that loop over many particles may be in a task themselves.
+// A task may itself run a loop over many particles on the executor.
 TEST(Executor, a_task_may_use_it_again) {
   for (const int threads : {1, 2, 5}) {
     const controller::Executor run = executor_of(threads);

@@ -36,7 +36,7 @@ TEST(RunWorkers, calls_each_worker_once_and_the_first_in_the_calling_thread) {
 TEST(RunWorkers, all_work_at_the_same_time) {
   constexpr int kCount = 4;
   std::atomic<int> arrived = 0;
-  // Would wait for ever if a worker began only after another had ended.
+  // Would wait forever if a worker only started after another had ended.
   run_workers(kCount, [&](int) {
     ++arrived;
     while (arrived < kCount) std::this_thread::yield();

@@ -22,7 +22,7 @@ const DatasetSpec& dataset(const std::vector<DatasetSpec>& layout, const std::st
 TEST(CertificateLayout, a_row_is_a_stage_or_a_step_of_all_stages) {
   const std::vector<DatasetSpec> once = certificate_layout();
   const std::vector<DatasetSpec> stepwise = certificate_layout(3);
-  // Drives have no C5, which is not worked out for plans that are driven.
+  // Drives have no C5, which is not computed during a drive.
   ASSERT_EQ(once.size(), stepwise.size() + 1);
   EXPECT_NE(std::ranges::find(once, "/certificate/conditioned", &DatasetSpec::path), once.end());
   EXPECT_EQ(std::ranges::find(stepwise, "/certificate/conditioned", &DatasetSpec::path),

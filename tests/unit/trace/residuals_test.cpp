@@ -7,7 +7,7 @@
 namespace qsmpc::harness {
 namespace residuals_test {
 
-/// A unit mass that moves by the model's period and is then off by `bias`.
+/// A unit mass that moves as the model does in a period and is then off by `bias`.
 Trace biased_trace(const models::Dynamics& model, const Eigen::Vector2d& bias, int steps) {
   Trace trace;
   Eigen::VectorXd state = Eigen::Vector2d(0.5, -1.0);

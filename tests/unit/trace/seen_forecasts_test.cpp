@@ -1,4 +1,4 @@
-// Forecasts that are worked out again from a trace, and where its obstacles truly were.
+// Forecasts recomputed from a trace, and the true positions of its obstacles.
 #include "harness/trace/seen_forecasts.hpp"
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace seen_forecasts_test {
 
 using ::testing::ElementsAre;
 
-/// One that walks on and one that may turn, and between them one that stands.
+/// A walking obstacle, a standing one, and one that may turn.
 Scenario crossing() {
   return load_scenario(
       "dubins_obstacles",
@@ -65,7 +65,7 @@ TEST(SeenForecasts, are_those_that_the_drive_had) {
       }
     }
   }
-  // What was seen matters: the forecast of the beginning would not do.
+  // Observations matter: the initial forecast would differ.
   EXPECT_NE(known[11][0][0][0].offset, known[0][0][5][0].offset);
   EXPECT_NE(known[11][1][0][0].weight, known[0][1][0][0].weight);
 }
@@ -101,8 +101,8 @@ TEST(SeenForecasts, stages_are_spread_with_both_ends) {
   EXPECT_THAT(spread_stages(0, 5), ElementsAre(0));
 }
 
-/// Two periods of 0.1 s in which the first obstacle goes on by (1, 2) m each, and the second one
-/// turns over π.
+/// Two periods of 0.1 s in which the first obstacle moves by (1, 2) m each, and the second one
+/// turns past π.
 Trace turning() {
   Trace trace;
   trace.scenario = crossing();
@@ -125,7 +125,7 @@ TEST(DrivenObstacles, move_straight_on_and_turn_the_shorter_way_between_instants
   const Eigen::Matrix3Xd early = others.poses_at(0.025);
   EXPECT_NEAR(early(0, 0), 0.25, 1e-12);
   EXPECT_NEAR(early(1, 0), 0.5, 1e-12);
-  // From 3 rad over π to −3 rad, which is 2π − 6 rad away.
+  // From 3 rad past π to −3 rad, a turn of 2π − 6 rad.
   EXPECT_NEAR(early(2, 1), 3.0 + 0.25 * (2.0 * std::numbers::pi - 6.0), 1e-12);
   EXPECT_EQ(others.poses_at(0.1).col(0), Eigen::Vector3d(1.0, 2.0, 0.0));
   EXPECT_EQ(others.poses_at(7.0).col(0), Eigen::Vector3d(2.0, 4.0, 0.0));

@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace summary_test {
 
-/// Straight on at 1.5 m/s from (0, 0) with heading 0: a period of the model is 0.15 m along x.
+/// Straight ahead at 1.5 m/s from (0, 0) with heading 0: the model moves 0.15 m along x per period.
 Trace straight_trace(int steps) {
   Trace trace;
   trace.scenario = parse_scenario(
@@ -85,7 +85,7 @@ TEST(Summary, headings_a_turn_apart_cost_the_same_where_the_target_is_meant_modu
   trace.steps[0].state[2] = 0.1 + 2.0 * std::numbers::pi;
   EXPECT_GT(EpisodeView(trace).summary().closed_loop_cost, 100.0);
   trace.scenario.target.angles = {2};
-  // ½ (2·5² + 6·0.1²), but for the rounding of the heading.
+  // ½ (2·5² + 6·0.1²), up to rounding of the heading.
   EXPECT_NEAR(EpisodeView(trace).summary().closed_loop_cost, 25.03, 1e-13);
 }
 
@@ -102,7 +102,7 @@ TEST(Summary, time_to_target_is_that_of_every_drive_that_ended_at_it) {
   Trace trace = straight_trace(4);
   trace.outcome = Outcome::kReached;
   EXPECT_DOUBLE_EQ(EpisodeView(trace).summary().time_to_target.value(), 0.4);
-  // Through an obstacle, and on to the target.
+  // Through an obstacle and on to the target.
   trace.outcome = Outcome::kCollision;
   trace.scenario.stop_when_unsafe = false;
   EXPECT_FALSE(EpisodeView(trace).summary().time_to_target.has_value());
@@ -196,7 +196,7 @@ TEST(Summary, risk_is_held_against_its_limits) {
 
 TEST(Summary, risk_without_limits_is_certified_and_not_exceeded) {
   Trace trace = straight_trace(2);
-  trace.steps[1].certificates[1].value = 0.999;  // the plan's sum is above 1
+  trace.steps[1].certificates[1].value = 0.999;  // the plan's sum exceeds 1
   const auto json = nlohmann::json::parse(summary_json(EpisodeView(trace)));
   for (const char* kind : {"stage", "plan", "mission"}) {
     EXPECT_TRUE(json["risk"][kind]["limit"].is_null()) << kind;
@@ -295,7 +295,7 @@ TEST(Summary, json_has_every_documented_key) {
 TEST(Summary, an_episode_that_broke_before_it_began_has_one_too) {
   Trace trace = straight_trace(0);
   trace.outcome = Outcome::kFault;
-  trace.fault = "words \xff of the simulator";  // no UTF-8
+  trace.fault = "words \xff of the simulator";  // invalid UTF-8
   trace.final_state = Eigen::Vector3d::Zero();
   const auto json = nlohmann::json::parse(summary_json(EpisodeView(trace)));
   EXPECT_EQ(json["steps"], 0);

@@ -1,5 +1,5 @@
-// An episode as comma-separated values: what is in each line, and that all lines are as long as the
-// head.
+// An episode as comma-separated values: the contents of each line, and equal numbers of fields in
+// all lines, including the header.
 #include "harness/trace/trace_csv.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace trace_csv_test {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// Fields of lines in which no field is quoted.
+/// Fields of lines without quoted fields.
 Rows rows_of(const std::string& text) {
   Rows rows;
   std::istringstream lines(text);
@@ -50,7 +50,7 @@ TEST(TraceCsv, has_a_line_for_every_control_instant) {
   const EpisodeView view(trace);
   const Rows rows = rows_of(episode_csv(view));
   expect_rectangular(rows);
-  ASSERT_EQ(rows.size(), trace.steps.size() + 2);  // with the head and the last state
+  ASSERT_EQ(rows.size(), trace.steps.size() + 2);  // including the header and the final state
   const StepRecord& second = trace.steps[1];
   EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "time [s]")]), second.time);
   EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "x [m]")]), second.state[0]);
@@ -58,7 +58,7 @@ TEST(TraceCsv, has_a_line_for_every_control_instant) {
   EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "belief x [m]")]), second.belief_mean[0]);
   EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "P(unsafe at next step) <=")]),
                    second.certificates.front().value);
-  // Of the last instant the state alone is known.
+  // At the last instant only the state is known.
   EXPECT_DOUBLE_EQ(std::stod(rows.back()[column(rows, "x [m]")]), trace.final_state[0]);
   EXPECT_EQ(rows.back()[column(rows, "P(unsafe at next step) <=")], "");
 }
@@ -70,13 +70,13 @@ TEST(TraceCsv, has_a_line_for_every_stage_of_every_plan) {
   const auto stages = static_cast<std::size_t>(trace.steps.front().plan_states.cols());
   ASSERT_EQ(rows.size(), 1 + trace.steps.size() * stages);
   const std::size_t bound = column(rows, "P(unsafe) <=");
-  EXPECT_EQ(rows[1][bound], "");  // the present is no stage that is certified
+  EXPECT_EQ(rows[1][bound], "");  // the present is not a certified stage
   EXPECT_DOUBLE_EQ(std::stod(rows[2][bound]), trace.steps[0].certificates[0].value);
   EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "x [m]")]), trace.steps[0].plan_states(0, 1));
   EXPECT_DOUBLE_EQ(std::stod(rows[2][0]), trace.steps[0].time + trace.scenario.time_step);
 }
 
-/// The example with an obstacle that moves behind one that stands.
+/// The example with a moving obstacle behind a standing one.
 Trace moving_trace() {
   Trace trace = testing::example_trace({.steps = 2});
   controller::Obstacle walker(controller::DiscShape{.centre = {5.0, 2.0}, .radius = 0.3});
@@ -94,7 +94,7 @@ TEST(TraceCsv, has_a_line_for_every_moving_obstacle_at_every_control_instant) {
   const Trace trace = moving_trace();
   const Rows rows = rows_of(obstacles_csv(EpisodeView(trace)));
   expect_rectangular(rows);
-  ASSERT_EQ(rows.size(), 4U);  // with the head and the end
+  ASSERT_EQ(rows.size(), 4U);  // including the header and the end
   const auto number = [&](std::size_t row, const std::string& name) {
     return std::stod(rows[row][column(rows, name)]);
   };
@@ -106,7 +106,8 @@ TEST(TraceCsv, has_a_line_for_every_moving_obstacle_at_every_control_instant) {
   EXPECT_DOUBLE_EQ(number(2, "seen x [m]"), 5.01);
   EXPECT_DOUBLE_EQ(number(2, "seen y [m]"), 2.08);
   EXPECT_DOUBLE_EQ(number(3, "y [m]"), 2.2);
-  EXPECT_EQ(rows[3][column(rows, "seen x [m]")], "");  // after the last period nobody looks
+  EXPECT_EQ(rows[3][column(rows, "seen x [m]")], "");  // there is no observation after the last
+                                                       // period
   const Trace still = testing::example_trace();
   EXPECT_EQ(rows_of(obstacles_csv(EpisodeView(still))).size(), 1U);
 }

@@ -1,4 +1,4 @@
-// What is left of a trace by a kill, a full disk or damage, and what is said of it.
+// What a kill, a full disk or damage leaves of a trace, and how it is reported.
 #include <array>
 #include <csignal>
 #include <filesystem>
@@ -104,8 +104,8 @@ TEST_F(TraceDurability, a_name_that_is_taken_by_a_folder_is_an_error_at_the_end)
   EXPECT_THROW(write_trace(path(), testing::example_trace({.steps = 1})), IoError);
 }
 
-/// What `write_trace` does in a process whose files may not grow beyond `limit` bytes; 0: it threw
-/// an IoError that names the path and the reason, and the process then ended as usual.
+/// The exit code of `write_trace` in a process whose files are limited to `limit` bytes; 0: it
+/// threw an IoError with path and reason, and the process then exited normally.
 int outcome_of_a_full_disk(const std::string& file, rlim_t limit) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -121,7 +121,7 @@ int outcome_of_a_full_disk(const std::string& file, rlim_t limit) {
           text.find(file) != std::string::npos && text.find("File too large") != std::string::npos;
       code = says_why ? 0 : 2;
     }
-    std::exit(code);  // with the exit handlers: HDF5's own must not hang or crash on what is left
+    std::exit(code);  // with exit handlers: HDF5's must not hang or crash on the partial file
   }
   int status = 0;
   ::waitpid(child, &status, 0);
@@ -129,7 +129,7 @@ int outcome_of_a_full_disk(const std::string& file, rlim_t limit) {
 }
 
 TEST_F(TraceDurability, a_disk_that_is_full_is_an_error_at_whatever_size_it_comes) {
-  // From the header alone, over the datasets, to the middle of the particles.
+  // From the header alone, through the datasets, to the middle of the particles.
   for (const rlim_t limit : {1, 1000, 5000, 20'000, 50'000, 100'000, 200'000, 400'000}) {
     EXPECT_EQ(outcome_of_a_full_disk(path(), limit), 0) << limit;
     EXPECT_FALSE(fs::exists(path()));
@@ -175,7 +175,7 @@ TEST_F(TraceDurability, a_damaged_partial_file_is_refused_at_once) {
   }
   ASSERT_EQ(read_trace(path("killed.h5")).steps.size(), 1U);
   std::string damaged = bytes_of(path("killed.h5"));
-  constexpr std::size_t kRootAddress = 36;  // in the superblock, which has a checksum
+  constexpr std::size_t kRootAddress = 36;  // in the superblock, which is protected by a checksum
   damaged[kRootAddress] = static_cast<char>(damaged[kRootAddress] ^ 0x55);
   write_bytes(path("killed.h5"), damaged);
   EXPECT_THAT(refusal(path("killed.h5")), HasSubstr("a trace that is not damaged"));

@@ -31,7 +31,7 @@ using testing::same_bits;
 
 class TraceFile : public testing::TraceFolder {};
 
-/// As large as the example's, and otherwise what no scenario would give.
+/// As large as the example's, but otherwise unlike any scenario's.
 models::SystemDescription unlike_any_system() {
   return {.name = "kite",
           .summary = "a kite — on a line",
@@ -94,8 +94,8 @@ void copy_dataset(const Hdf5File& from, Hdf5File& to, const DatasetSpec& spec) {
   }
 }
 
-/// Writes `old_file`: the trace in `file` without some datasets, or the group /system, and with
-/// another word for its outcome where one is given.
+/// Writes `old_file`: the trace in `file` without some datasets or the group /system, and with
+/// another name for its outcome if one is given.
 void copy_without(const std::string& file, const std::vector<std::string>& missing,
                   const std::string& old_file, const std::string& outcome = {}) {
   const Hdf5File written = Hdf5File::open(file);
@@ -153,7 +153,7 @@ TEST_F(TraceFile, a_trace_from_before_measurement_noise_is_of_a_planner_that_saw
   }
 }
 
-/// What the reader makes of `trace` if it had been recorded with the outcome `recorded`.
+/// The reader's outcome of `trace` if it had been recorded with the outcome `recorded`.
 Outcome outcome_read(const Trace& trace, const std::string& recorded, const std::string& file) {
   write_trace(file, trace);
   copy_without(file, {}, file + "-old.h5", recorded);
@@ -263,7 +263,7 @@ TEST_F(TraceFile, every_dataset_says_its_units_and_names_every_axis) {
 TEST_F(TraceFile, the_finished_file_is_closed_for_every_reader) {
   write_trace(path(), testing::example_trace());
   EXPECT_FALSE(Hdf5File::open(path()).left_open_by_writer());
-  // Byte 11 of the superblock holds the flags of an open writer; other programs refuse on them.
+  // Byte 11 of the superblock holds the flags of an open writer, which other programs refuse.
   EXPECT_EQ(bytes_of(path()).at(11), '\0');
 }
 

@@ -1,4 +1,4 @@
-// A folder for traces, and what may be asked of files in it.
+// A folder for traces, and helpers to inspect files in it.
 #pragma once
 
 #include <fstream>
@@ -22,8 +22,8 @@ class TraceFolder : public ::testing::Test {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
-  /// All bytes after the superblock and its extension, in which HDF5 keeps, unasked, the second in
-  /// which the file was made.
+  /// All bytes after the superblock and its extension, in which HDF5 always stores the second in
+  /// which the file was created.
   [[nodiscard]] static std::string content_of(const std::string& file) {
     constexpr std::size_t kHeader = 108;
     return bytes_of(file).substr(kHeader);
@@ -31,7 +31,7 @@ class TraceFolder : public ::testing::Test {
   static void write_bytes(const std::string& file, const std::string& bytes) {
     std::ofstream(file, std::ios::binary) << bytes;
   }
-  /// What `read_trace` says of a file that it refuses as bad input.
+  /// The message with which `read_trace` refuses a file as bad input.
   [[nodiscard]] static std::string refusal(const std::string& file) {
     try {
       static_cast<void>(harness::read_trace(file));

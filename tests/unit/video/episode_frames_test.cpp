@@ -26,10 +26,10 @@ TEST(episode_frames, vehicle_drives_from_state_to_state_and_eases_the_disturbanc
   const Trace trace = straight_trace();
   const EpisodeView view(trace);
   const EpisodeFrames frames(view);
-  // In the middle of the first period: half a stride, not yet kicked.
+  // In the middle of the first period: half a stride, before the kick.
   EXPECT_NEAR(frames.at(0.05).pose.x, 0.5 * kStride, 1e-12);
   EXPECT_NEAR(frames.at(0.05).pose.y, 0.0, 1e-12);
-  // At the control instant the kick has not been drawn; half of it is after half of the ease time.
+  // At the control instant the kick is not drawn yet; after half of the ease time, half of it is.
   EXPECT_NEAR(frames.at(0.1).pose.y, 0.0, 1e-12);
   EXPECT_NEAR(frames.at(0.1 + 0.5 * EpisodeTrack::kEaseTime).pose.y, 0.5 * kKick, 1e-12);
   EXPECT_NEAR(frames.at(0.1 + EpisodeTrack::kEaseTime).pose.y, kKick, 1e-12);
@@ -41,7 +41,7 @@ TEST(episode_frames, camera_follows_smoothly_without_lag) {
   const Trace trace = straight_trace();
   const EpisodeView view(trace);
   const EpisodeFrames frames(view);
-  // The states lie on a line, which the smoothing must reproduce, at its ends too.
+  // The states lie on a line, which the smoothing must reproduce, including its ends.
   for (const double time : {0.0, 0.13, 0.37, 0.6}) {
     const render::Frame frame = frames.at(time);
     ASSERT_TRUE(frame.followed);
@@ -157,7 +157,7 @@ TEST(episode_frames, trace_without_steps_still_has_a_frame) {
   EXPECT_EQ(frames.at(0.0).banner, "interrupted");
 }
 
-// A cloud about each stage's mean with the variances 0.01 along x and 0.04 along y.
+// A cloud about each stage's mean with variances 0.01 along x and 0.04 along y.
 Trace cloudy_trace() {
   Trace trace = straight_trace();
   trace.scenario.disturbance.covariance = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
@@ -180,7 +180,7 @@ TEST(episode_frames, ellipses_and_tube_are_those_of_the_particles_moments) {
   const Trace trace = cloudy_trace();
   const render::Frame frame = EpisodeFrames(EpisodeView(trace)).at(0.2);
   ASSERT_EQ(frame.ellipses.size(), 3U);
-  const double radius = std::sqrt(-2.0 * std::log(0.05));  // of 95 % of the standard Gaussian
+  const double radius = std::sqrt(-2.0 * std::log(0.05));  // 95 % of the standard Gaussian
   const render::PlanarEllipse& most = frame.ellipses[1].most;
   EXPECT_NEAR(most.centre.x, 3.0 * kStride, 1e-12);
   EXPECT_NEAR(std::abs(render::on_ellipse(most, 0.0).y - most.centre.y), 0.2 * radius, 1e-12);
@@ -196,7 +196,7 @@ TEST(episode_frames, ellipses_and_tube_are_those_of_the_particles_moments) {
   EXPECT_EQ(frame.tube.back().bound, 0.25);
 }
 
-// Twice the area of the triangle, positive where it turns left.
+// Twice the triangle's signed area, positive for a left turn.
 double turn(const render::PlanarPoint& a, const render::PlanarPoint& b,
             const render::PlanarPoint& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -206,9 +206,9 @@ TEST(episode_frames, tube_ends_round_and_covers_the_last_ellipse) {
   std::vector<PlanarMoments> stages(2);
   stages[0].covariance = Eigen::Vector2d(0.01, 0.01).asDiagonal();
   stages[1].mean << 1.0, 0.4;
-  stages[1].covariance << 0.09, 0.03, 0.03, 0.04;  // aslant to the way
+  stages[1].covariance << 0.09, 0.03, 0.03, 0.04;  // oblique to the path
   const std::vector<render::TubeSection> tube = belief_tube(stages, {0.1});
-  std::vector<render::PlanarPoint> outline;  // to the left of the way, and back
+  std::vector<render::PlanarPoint> outline;  // along the left side of the path, and back
   for (auto at = tube.rbegin(); at != tube.rend(); ++at) outline.push_back(at->left);
   for (const render::TubeSection& section : tube) outline.push_back(section.right);
   const Eigen::Vector2d along = stages[1].mean.normalized();
@@ -239,7 +239,7 @@ TEST(episode_frames, ghost_drives_along_the_plan_of_the_period_before) {
   const auto ghost = frames.at(0.25).ghost;
   ASSERT_TRUE(ghost);
   EXPECT_NEAR(ghost->x, 2.5 * kStride, 1e-12);
-  EXPECT_NEAR(ghost->y, 1.0 * kKick, 1e-12);  // that plan knew nothing of the second kick
+  EXPECT_NEAR(ghost->y, 1.0 * kKick, 1e-12);  // that plan did not know of the second kick
 }
 
 TEST(episode_frames, clearance_of_the_driven_path_is_the_distance_to_the_unsafe_set) {
@@ -258,7 +258,7 @@ TEST(episode_frames, raw_points_are_the_stepped_ones_with_the_noise) {
   EXPECT_EQ(row_of(frame, "raw points drawn"), "all");
   render::PlanarPoint mean;
   for (std::size_t i = 0; i < frame.raw_points.size(); ++i) mean.x += frame.raw_points[i].x;
-  // Both stages step 0.15 m ahead; noise and clouds are symmetric and as heavy on either side.
+  // Both stages move 0.15 m ahead; noise and clouds are symmetric, with equal weight on both sides.
   EXPECT_NEAR(mean.x / static_cast<double>(frame.raw_points.size()), (3.0 + 4.0) / 2.0 * kStride,
               1e-9);
   EXPECT_TRUE(EpisodeFrames(EpisodeView(trace)).at(0.2).raw_points.empty());
@@ -266,7 +266,7 @@ TEST(episode_frames, raw_points_are_the_stepped_ones_with_the_noise) {
 
 TEST(episode_frames, too_many_particles_are_thinned_and_a_row_says_so) {
   Trace trace = straight_trace();
-  constexpr Eigen::Index kMany = 7000;  // a stage, three stages
+  constexpr Eigen::Index kMany = 7000;  // per stage, three stages
   for (StageParticles& stage : trace.steps[0].particles) {
     stage.locations = controller::Points::Random(3, kMany);
     stage.weights = Eigen::VectorXd::Constant(kMany, 1.0 / kMany);
@@ -329,7 +329,7 @@ TEST(overlays, lists_name_what_is_shown) {
     EXPECT_THROW((void)parse_overlays(wrong, "--overlays"), InputError) << wrong;
   }
   EXPECT_THROW((void)overlays_of({"x"}), std::invalid_argument);
-  // A scenario's default is that of the values.
+  // A scenario's default equals the default of the values.
   const Overlays shipped = overlays_of(Scenario::Video{}.overlays);
   const Overlays plain;
   EXPECT_EQ(shipped.raw, plain.raw);

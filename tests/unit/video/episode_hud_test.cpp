@@ -32,7 +32,7 @@ TEST(episode_hud, what_is_no_bound_is_not_called_one) {
 TEST(episode_hud, speed_is_the_plants_and_neither_the_models_constant_nor_the_noises) {
   Trace trace = straight_trace();
   trace.scenario.model.parameters["speed"] = 9.0;
-  // The plant loses speed in its third period: half of the stride, then the same kick.
+  // In its third period the plant moves only half of the stride, followed by the same kick.
   for (std::size_t k = 3; k < trace.steps.size(); ++k) trace.steps[k].state.x() -= 0.5 * kStride;
   trace.final_state.x() -= 0.5 * kStride;
   const EpisodeView view(trace);

@@ -75,7 +75,7 @@ TEST(episode_painter, the_shorter_episode_stands_on_its_last_frame) {
   EXPECT_TRUE(frames[0].banner.empty());
   EXPECT_THAT(frames[1].banner, ::testing::HasSubstr("target reached after 0.3 s"));
   EXPECT_NEAR(frames[1].pose.x, 3 * kStride, 1e-12);
-  // One time axis and one range for both.
+  // A common time axis and range.
   EXPECT_EQ(frames[0].charts[2].slots, frames[1].charts[2].slots);
   EXPECT_EQ(frames[0].charts[0].lower, frames[1].charts[0].lower);
 }

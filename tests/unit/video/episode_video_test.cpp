@@ -29,7 +29,7 @@ TEST(episode_video, lasts_as_long_as_the_episode_and_a_second_more) {
     return true;
   });
   const render::DecodedVideo video = render::decode_video(path);
-  EXPECT_EQ(video.frames, 16);  // 0.6 s and 1 s at 10 frames a second
+  EXPECT_EQ(video.frames, 16);  // 0.6 s plus 1 s at 10 frames per second
   EXPECT_NEAR(video.duration, 1.6, 1e-3);
   EXPECT_EQ(video.width, 320);
 }
@@ -45,7 +45,8 @@ TEST(episode_video, does_not_depend_on_the_number_of_threads) {
   const render::DecodedVideo one = render::decode_video(folder / "1.mp4");
   const render::DecodedVideo three = render::decode_video(folder / "3.mp4");
   EXPECT_EQ(one.frames, three.frames);
-  // The pictures are the same to the last bit (episode_painter_test.cpp); the encoder is not.
+  // The pictures are identical to the last bit (episode_painter_test.cpp); the encoder's output is
+  // not.
   ASSERT_EQ(one.first.rgb.size(), three.first.rgb.size());
   int difference = 0;
   for (std::size_t i = 0; i < one.first.rgb.size(); ++i) {
@@ -59,7 +60,7 @@ TEST(episode_video, speed_shortens_the_episode_and_not_the_second_of_its_outcome
   EpisodeVideoOptions options = kSmallVideo;
   options.speed = 2.0;
   const VideoTimings timings = write_episode_video(EpisodeView(straight_trace()), options, path);
-  EXPECT_EQ(timings.frames, 13);  // 0.3 s and 1 s at 10 frames a second
+  EXPECT_EQ(timings.frames, 13);  // 0.3 s plus 1 s at 10 frames per second
   EXPECT_EQ(render::decode_video(path).frames, 13);
 }
 
@@ -70,7 +71,7 @@ TEST(episode_video, part_of_an_episode_has_the_length_of_the_part) {
   options.to = 0.5;
   write_episode_video(EpisodeView(straight_trace()), options, folder / "part.mp4");
   EXPECT_EQ(render::decode_video(folder / "part.mp4").frames, 3);  // no outcome is shown
-  // It begins where the whole one is then.
+  // It starts with the same picture as the whole video at that time.
   write_episode_still(EpisodeView(straight_trace()), options, 0.2, folder / "still.png");
   const render::Image begin = render::decode_video(folder / "part.mp4").first;
   const render::Image still = render::decode_video(folder / "still.png").first;
@@ -78,7 +79,7 @@ TEST(episode_video, part_of_an_episode_has_the_length_of_the_part) {
   for (std::size_t i = 0; i < still.rgb.size(); ++i) {
     difference += std::abs(begin.rgb[i] - still.rgb[i]);
   }
-  EXPECT_LT(difference / static_cast<double>(still.rgb.size()), 4.0);  // of 255, lossy coding
+  EXPECT_LT(difference / static_cast<double>(still.rgb.size()), 4.0);  // out of 255, lossy coding
 }
 
 TEST(episode_video, speeds_and_times_that_are_none_are_refused_and_leave_no_file) {

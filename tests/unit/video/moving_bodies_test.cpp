@@ -1,4 +1,4 @@
-// Obstacles that move, in the frames of an episode.
+// Moving obstacles in the frames of an episode.
 #include "harness/video/moving_bodies.hpp"
 
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr double kSpeed = 2.0;   // m/s, along y
 constexpr double kRadius = 0.2;  // m
 const Eigen::Vector2d kBegin(0.9, -1.0);
 
-/// It crosses the way of the straight episode.
+/// It crosses the path of the straight episode.
 Trace crossed_trace() {
   Trace trace = straight_trace();
   controller::Obstacle walker(controller::DiscShape{.centre = kBegin, .radius = kRadius});
@@ -62,7 +62,7 @@ TEST(moving_bodies, are_where_they_truly_are_and_not_where_they_are_written) {
   }
 }
 
-// Of the part of the way that lies behind, each place keeps the clearance of when it was passed.
+// Each place on the path already driven keeps the clearance of the time when it was passed.
 TEST(moving_bodies, count_for_the_clearance_of_the_way_when_it_was_driven) {
   const Trace trace = crossed_trace();
   const EpisodeView view(trace);
@@ -80,7 +80,7 @@ TEST(moving_bodies, count_for_the_clearance_of_the_way_when_it_was_driven) {
   for (std::size_t i = 0; i + 1 < now.clearances.size(); ++i) {
     EXPECT_EQ(end.clearances[i], now.clearances[i]) << i;
   }
-  // It is nearer than the walls at the time when it crosses.
+  // When it crosses, it is nearer than the walls.
   EXPECT_LT(now.clearances.back(), 0.5);
 }
 
@@ -89,18 +89,18 @@ TEST(moving_bodies, have_the_ellipses_of_their_probable_ways_as_the_plan_has_the
   const EpisodeView view(trace);
   const EpisodeFrames frames(view);
   const render::Frame frame = frames.at(0.25);
-  ASSERT_EQ(frame.forecasts.size(), 1U);  // the other way is hardly possible
+  ASSERT_EQ(frame.forecasts.size(), 1U);  // the other way is very improbable
   const render::ForecastWay& way = frame.forecasts.front();
   EXPECT_GT(way.weight, 0.99);
   ASSERT_EQ(way.ellipses.size(), way.way.size());
   EXPECT_EQ(way.way.size(), 5U);
-  // What was seen fits the way exactly; the plan is of 0.2 s.
+  // The observations fit the way exactly; the plan starts at 0.2 s.
   const double seconds = kPeriod * view.parts().stages;
   EXPECT_NEAR(way.way.front().y, kBegin.y() + kSpeed * 0.2, 1e-9);
   EXPECT_NEAR(way.way.back().y, kBegin.y() + kSpeed * (0.2 + seconds), 1e-9);
   const auto length = [](const render::PlanarPoint& axis) { return std::hypot(axis.x, axis.y); };
   EXPECT_GT(length(way.ellipses.back().first_axis), length(way.ellipses.front().first_axis));
-  // Nearly nothing is learnt from such measurements: its speed deviates by 0.3 m/s along the way.
+  // Such measurements carry almost no information: the speed along the way deviates by 0.3 m/s.
   EXPECT_NEAR(length(way.ellipses.back().first_axis) / kForecastDeviations, 0.3 * (0.2 + seconds),
               0.2 * 0.3 * (0.2 + seconds));
 }

@@ -19,7 +19,7 @@ TEST(ordered_drawing, pictures_come_in_order_whoever_drew_them) {
   constexpr int kTotal = 50;
   OrderedDrawing drawing({.total = kTotal, .threads = 3}, [] {
     return [](int index, render::Image& out) {
-      // Every third is late.
+      // Every third picture is late.
       std::this_thread::sleep_for(std::chrono::milliseconds(index % 3 == 0 ? 2 : 0));
       out.width = index;
     };
@@ -45,7 +45,8 @@ TEST(ordered_drawing, no_more_pictures_are_begun_than_there_are_slots) {
   for (int taken = 1; taken <= 20; ++taken) {
     drawing.take(image);
     EXPECT_LE(begun, taken + drawing.slots());
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // for those who would go on
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // gives threads time to start
+                                                                // further pictures
     EXPECT_LE(begun, taken + drawing.slots());
   }
 }
@@ -62,7 +63,7 @@ TEST(ordered_drawing, memory_of_pictures_is_used_again) {
   for (int index = 0; index < 60; ++index) {
     drawing.take(image);
   }
-  EXPECT_LE(allocations, drawing.slots() + 1);  // and the one that the taker holds
+  EXPECT_LE(allocations, drawing.slots() + 1);  // plus the one held by the caller
 }
 
 TEST(ordered_drawing, each_thread_makes_its_own_drawer_and_uses_it_alone) {

@@ -1,4 +1,4 @@
-// Frames of systems without a place in the plane.
+// Frames of systems without a position in the plane.
 
 #include <cmath>
 #include <utility>
@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace rail_frames_test {
 
-// A point on a line at 0.1 m more in each period, and its plan, which goes on so.
+// A point on a line that advances by 0.1 m per period, and its plan, which continues the motion.
 Trace rail_trace() {
   Trace trace;
   trace.scenario = load_scenario("double_integrator");
@@ -59,7 +59,7 @@ TEST(RailFrames, a_system_without_a_plane_stands_on_a_rail_and_time_is_y) {
 
 TEST(RailFrames, clearance_of_the_driven_path_is_that_of_the_whole_state) {
   Trace trace = rail_trace();
-  // Faster than 1.2 m/s is unsafe, wherever it is.
+  // Faster than 1.2 m/s is unsafe, at any position.
   trace.scenario.safe_set.bounds.upper[1] = 1.2;
   trace.steps[2].state[1] = 1.1;
   const EpisodeView view(trace);
@@ -72,7 +72,7 @@ TEST(RailFrames, clearance_of_the_driven_path_is_that_of_the_whole_state) {
   EXPECT_NEAR(frame.clearances.back(), 0.2, 1e-9);
 }
 
-/// How many pixels of the lines from `begin` on have the red of an alarm.
+/// The number of alarm-red pixels in the lines from `begin` on.
 int red_pixels(const render::Image& image, int begin, int end) {
   int count = 0;
   for (int y = begin; y < end; ++y) {
@@ -96,7 +96,7 @@ TEST(RailFrames, the_outcome_does_not_hide_an_upright_pole) {
     trace.steps.push_back(step);
   }
   trace.final_state = Eigen::Vector4d::Zero();
-  trace.outcome = Outcome::kCollision;  // whose words are on red
+  trace.outcome = Outcome::kCollision;  // with text on red
   trace = testing::described(std::move(trace));
   const EpisodeView view(trace);
   const EpisodePictures pictures(view, {.width = 640, .height = 360});

@@ -1,4 +1,4 @@
-// An episode as short and plain as can be, for tests of its pictures.
+// The shortest and plainest episode, for tests of its pictures.
 #pragma once
 
 #include <cmath>
@@ -37,7 +37,7 @@ inline Scenario straight_scenario() {
   return scenario;
 }
 
-/// Straight ahead, moved sideways after each period.
+/// Drives straight ahead and is displaced sideways after each period.
 inline Trace straight_trace() {
   Trace trace;
   trace.scenario = straight_scenario();
@@ -63,7 +63,7 @@ inline Trace straight_trace() {
   return testing::described(std::move(trace));
 }
 
-/// What the head-up display says in the row `name`.
+/// The text of the row `name` on the head-up display.
 inline std::string row_of(const render::Frame& frame, const std::string& name) {
   for (const render::HudRow& row : frame.hud) {
     if (row.name == name) {

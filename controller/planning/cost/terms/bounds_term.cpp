@@ -1,4 +1,4 @@
-// The smooth penalties of the bounds, in expectation over what particles stand for.
+// The smooth penalties of the bounds, in expectation over the laws that particles represent.
 #include <utility>
 #include <vector>
 
@@ -47,7 +47,7 @@ class BoundsTerm final : public StageTerm {
   }
 
  private:
-  /// One disc of the body, and what is worked on.
+  /// One disc of the body, with scratch.
   struct DiscBounds {
     DiscPlacement placement;
     ExpectedBounds bounds;

@@ -39,7 +39,7 @@ class ObstacleTerm final : public StageTerm {
   }
 
   [[nodiscard]] double penalty_of_moved(const DiscView& disc, const TermBatch& batch) const {
-    // A thread's own, as chunks are worked on side by side; allocates for the largest one only.
+    // Per thread, as chunks are processed concurrently; allocates only for the largest one.
     thread_local Points centres;
     thread_local Points gradient;
     thread_local Eigen::VectorXd weights;

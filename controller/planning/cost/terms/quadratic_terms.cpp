@@ -1,11 +1,11 @@
 // The quadratic terms: states and inputs along the horizon (Eq. 4-18) and the last state (Eq.
 // 4-19).
 //
-// States are taken where the step leads to, before the compression, which would lose a part of the
-// second moment:
+// States are taken after the step and before the compression, which would lose part of the second
+// moment:
 //     ½ E|x − r|²_Q = ½ Σ_i ρ_i |f_i − r|²_Q + ½ tr(Q Σ_w),
-// and the terminal cost likewise, without the ½. The traces, and the belief's own cost, are what no
-// decision changes.
+// and likewise the terminal cost, without the ½. No decision changes the traces and the cost of the
+// belief.
 #include <vector>
 
 #include "controller/planning/cost/cost_terms.hpp"
@@ -34,7 +34,7 @@ class QuadraticTerm : public StageTerm {
     return stage_forms_.empty() ? form_ : stage_forms_[static_cast<std::size_t>(stage)];
   }
 
-  /// Takes the targets as they are now.
+  /// Takes the current targets.
   void place_at(const QuadraticCost& cost) {
     form_.centre = cost.target;
     stage_forms_.resize(static_cast<std::size_t>(cost.stage_targets.cols()), form_);
@@ -47,7 +47,7 @@ class QuadraticTerm : public StageTerm {
   TermPlace place_;
   double factor_;
   QuadraticForm form_;
-  std::vector<QuadraticForm> stage_forms_;  // where the target moves
+  std::vector<QuadraticForm> stage_forms_;  // for a moving target
 };
 
 class InputTerm final : public QuadraticTerm {

@@ -29,7 +29,8 @@ TEST(AffineSurrogate, law_is_that_of_simulated_paths) {
       const Eigen::MatrixXd covariance = sample_covariance(pairs.surrogate[k], pairs.surrogate[k]);
       const Eigen::VectorXd mean = pairs.surrogate[k].rowwise().mean();
       const Eigen::VectorXd deviation = law.covariance.diagonal().cwiseSqrt();
-      // Five standard errors; that of a covariance is at most √2 of the deviations' product.
+      // Five standard errors; that of a covariance is at most √2 times the product of the
+      // deviations.
       const double five = 5.0 / std::sqrt(kSamples);
       for (Eigen::Index i = 0; i < mean.size(); ++i) {
         EXPECT_NEAR(mean[i], law.mean[i], five * deviation[i]) << one.name << k;
@@ -55,8 +56,8 @@ TEST(AffineSurrogate, error_and_region_bound_what_simulated_states_do) {
     for (std::size_t k = 0; k < stages.size(); ++k) {
       const Eigen::VectorXd distance = root_mean_squares(pairs.state[k] - pairs.surrogate[k]);
       for (Eigen::Index i = 0; i < distance.size(); ++i) {
-        // Squares of second and third order in normal variables: their sample's root is within 10
-        // %. Sums of numbers of order one are rounded even where nothing separates the two.
+        // Squares of second and third order in normal variables: their sample's root mean square is
+        // within 10 %. Sums of numbers of order one are rounded even if the two are equal.
         EXPECT_LE(distance[i], 1.1 * stages[k].error[i] + 1e-14)
             << one.name << ", stage " << k << ", coordinate " << i;
       }
@@ -66,7 +67,7 @@ TEST(AffineSurrogate, error_and_region_bound_what_simulated_states_do) {
         const Eigen::VectorXd norms =
             offset.array().abs().pow(p).rowwise().mean().pow(1.0 / p).matrix();
         for (Eigen::Index i = 0; i < norms.size(); ++i) {
-          // Sample means of these powers are below the truth more often than above it.
+          // Sample means of these powers are more often below the truth than above it.
           EXPECT_LE(norms[i], 1.1 * stages[k].higher[order][i] + 1e-14)
               << one.name << ", stage " << k << ", coordinate " << i << ", order " << p;
         }
@@ -89,8 +90,8 @@ TEST(AffineSurrogate, error_is_tight_where_the_step_is_nearly_affine) {
     Case one;
     double ratio;
   };
-  // Open loop the unicycle's error is exact. Elsewhere the last stage's error is at most this many
-  // times what simulated paths show.
+  // In open loop the unicycle's error is exact. Otherwise the last stage's error is at most this
+  // multiple of the error of simulated paths.
   const Feedback lqr{.closed_loop = true};
   for (const Expected& expected : std::vector<Expected>{{dubins({}), 1.1},
                                                         {skewed_dubins({}, generator), 1.15},
@@ -109,11 +110,12 @@ TEST(AffineSurrogate, error_is_tight_where_the_step_is_nearly_affine) {
 }
 
 TEST(AffineSurrogate, known_example_has_the_known_error) {
-  // Belief N(0, 0.01 I), u = 0.3, noise diag(0.01, 0.01, 0.001), 0.15 m a step: 0.0104 at stage 8.
+  // Belief N(0, 0.01 I), u = 0.3, noise diag(0.01, 0.01, 0.001), 0.15 m per step: 0.0104 at stage
+  // 8.
   const Case one = dubins({});
   const std::vector<SurrogateStage> stages = affine_surrogates(one.motion());
   ASSERT_EQ(stages.size(), 9U);
-  EXPECT_NEAR(stages.back().error.norm(), 0.0104, 5e-5);  // as printed
+  EXPECT_NEAR(stages.back().error.norm(), 0.0104, 5e-5);  // as published
   EXPECT_EQ(stages.back().error[models::Dubins::kHeading], 0.0);
   EXPECT_EQ(stages.back().leaving, 0.0);
 }
@@ -129,7 +131,8 @@ TEST(AffineSurrogate, is_the_state_of_an_affine_system_that_never_saturates) {
 }
 
 TEST(AffineSurrogate, regions_are_charged_for) {
-  // A region that not everything is certain to be in costs, also where the error needs none.
+  // A region that does not contain everything with certainty is charged for, even if the error does
+  // not use it.
   Generator generator(114);
   for (const Case& one : all_cases(generator)) {
     const std::vector<SurrogateStage> stages = affine_surrogates(one.motion());
@@ -219,7 +222,7 @@ struct CubicInput {
 };
 
 TEST(AffineSurrogate, curvature_in_an_input_needs_the_core) {
-  // The second derivative is bounded on the core's inputs only.
+  // The second derivative is bounded only on the core's inputs.
   const Case one = make_case("cubic input",
                              std::make_shared<models::TemplatedDynamics<CubicInput>>(CubicInput{}),
                              around(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)),

@@ -62,7 +62,7 @@ struct DrivenBicycle {
 
 constexpr int kPaths = 50000;
 
-/// The share of simulated paths that are unsafe, stage by stage from 1 on.
+/// The share of unsafe simulated paths at each stage from 1 on.
 std::vector<double> simulated_truth(const PredictedMotion& motion, const SafeSet& safe_set,
                                     Generator& generator) {
   NormalSampler belief(motion.belief.covariance);
@@ -90,7 +90,7 @@ double sampling_error(double share) { return 5.0 * std::sqrt(share * (1.0 - shar
 
 TEST(Certificate, known_example_has_the_known_figures) {
   // Belief N(0, 0.01 I), u = 0.3 open loop, safe set [−1, 12]², stage 8: the truth is 2.9e-4 (1e6
-  // samples); C3 was 3.7e-3 and C4 6.6e-4 before their error was split into coordinates.
+  // samples); C3 was 3.7e-3 and C4 6.6e-4 before their error was split by coordinate.
   const auto car = dubins_car();
   PlannerSettings settings = dubins_settings();
   settings.horizon = 8;
@@ -112,7 +112,7 @@ TEST(Certificate, table_names_each_figure_once) {
     EXPECT_TRUE(keys.insert(entry.key).second) << entry.key;
     EXPECT_TRUE(datasets.insert(entry.dataset).second) << entry.dataset;
     EXPECT_FALSE(entry.meaning.empty());
-    // What is not known must not pass for a bound that holds.
+    // A missing value must not be mistaken for a valid bound.
     EXPECT_TRUE(!entry.is_bound || entry.without == 1.0) << entry.key;
     EXPECT_EQ(blank_certificate().of(entry.key), entry.without);
     EXPECT_EQ(StageCertificate{}.of(entry.key), entry.without);
@@ -215,8 +215,8 @@ TEST(Certificate, least_effort_gives_the_same_value_but_for_what_may_be_left_out
       EXPECT_EQ(least[k].of("c1"), every[k].of("c1"));
       EXPECT_GE(least[k].of("c3"), every[k].of("c3"));
       EXPECT_GE(least[k].of("c4"), every[k].of("c4"));
-      // The searches in t end at different points, each within a few percent of the best; and a
-      // part of the unsafe set (there are four walls) is not searched further below 1e-4.
+      // The searches in t end at different points, each within a few percent of the optimum; and
+      // the search for a part of the unsafe set (there are four walls) is not refined below 1e-4.
       EXPECT_LE(least[k].value, 1.03 * every[k].value + 4e-4);
       EXPECT_GE(least[k].of("c2"), 0.97 * every[k].of("c2"));
     }
@@ -257,7 +257,8 @@ TEST(ErrorBudget, without_a_lipschitz_constant_is_infinite_but_for_a_known_state
   EXPECT_EQ(budgets[2].total, kInfinity);
   const auto certificates =
       certify(motion_of(planner, known, plan), planner.settings().safe_set, budgets);
-  EXPECT_LT(certificates[0].of("c2"), 1e-6);  // one step from a known state, ten deviations inside
+  EXPECT_LT(certificates[0].of("c2"), 1e-6);  // one step from a known state, ten standard
+                                              // deviations inside
   EXPECT_EQ(certificates[1].value, 1.0);
 }
 
@@ -273,14 +274,14 @@ TEST(ErrorBudget, bicycle_has_local_constants) {
       EXPECT_TRUE(std::isfinite(here.total));
       EXPECT_GT(here.leaving, before.leaving);
       EXPECT_LT(here.leaving, 1e-4);
-      // All particles are in their regions.
+      // All particles are within their regions.
       EXPECT_NEAR(here.before_noise, before.lipschitz * before.total, 1e-13 * here.before_noise);
       EXPECT_NEAR(here.total,
                   std::hypot(here.before_noise, driven.planner->propagator().noise_w2()) +
                       driven.plan.prediction.maps[k - 1].compression_w2,
                   1e-13 * here.total);
       EXPECT_GE(here.belief + here.noise + here.compression, here.total * (1.0 - 1e-13));
-      EXPECT_GE(before.lipschitz, 1.0);  // x and y are carried over as they are
+      EXPECT_GE(before.lipschitz, 1.0);  // x and y enter the next state with factor one
     }
   }
 }
@@ -321,7 +322,7 @@ TEST(ErrorBudget, counts_particles_outside_of_their_region) {
   DrivenBicycle driven(false);
   const std::vector<StageBudget> plain = error_budget(driven.motion());
   constexpr Eigen::Index kStage = 3;
-  // One particle far out, 3 m/s to the side: the constants do not hold there.
+  // One particle far outside, 3 m/s sideways, where the constants do not hold.
   Prediction& prediction = driven.plan.prediction;
   prediction.stages[kStage].locations(4, 0) = 3.0;
   const PredictedMotion motion = driven.motion();

@@ -23,8 +23,8 @@ SurrogateBounds plain_bounds(const PredictedMotion& motion, const UnsafeSet& uns
   return surrogate_bounds(motion, unsafe, CertificateEffort::kEvery, run_in_turn);
 }
 
-/// A case, where it is unsafe, and what C5 must be at most at the last stage, in relation to the
-/// truth and to C4.
+/// A case, its unsafe region, and the maximum of C5 at the last stage relative to the truth and to
+/// C4.
 struct Hard {
   Case one;
   Eigen::Index axis;
@@ -37,14 +37,14 @@ std::vector<Hard> hard_cases() {
     return Feedback{.closed_loop = true, .gain = matrix};
   };
   return {
-      // A heading that is hardly known.
+      // A heading that is almost unknown.
       {.one = dubins({}, 0.0, 1.0), .axis = 1, .over_truth = 1.2, .of_plain = 0.5},
-      // A feedback that is clamped as often as not.
+      // A feedback that is clamped half of the time.
       {.one = double_integrator(gain(Eigen::RowVector2d(-6.0, -4.0)), 0.5, 0.3),
        .axis = 0,
        .over_truth = 2.0,
        .of_plain = 0.1},
-      // A pole that has fallen by much or little.
+      // A pole that has fallen by an uncertain amount.
       {.one = cart_pole({}, 6.0), .axis = 2, .over_truth = 1.3, .of_plain = 0.2},
   };
 }
@@ -81,7 +81,7 @@ TEST(ConditionedBounds, do_not_depend_on_the_order_of_the_work) {
 }
 
 TEST(ConditionedBounds, are_not_worked_out_where_there_is_nothing_to_gain) {
-  // The step is affine and nothing is clamped: C4 is the probability itself.
+  // The step is affine and nothing is clamped: C4 is the exact probability.
   const Case one = double_integrator({});
   const SafeSet safe_set = unsafe_at_the_end(one, 0, 0.01);
   const UnsafeSet unsafe(safe_set);

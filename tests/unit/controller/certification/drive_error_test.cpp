@@ -1,5 +1,5 @@
-// Model errors that are others in the first periods of a drive: which of them stands at which stage
-// of a plan, and that known offsets move the surrogate.
+// Model errors that differ in the first periods of a drive: which one applies at which stage of a
+// plan, and that known offsets move the surrogate.
 #include <cmath>
 #include <vector>
 
@@ -19,7 +19,7 @@ using namespace testing;
 // Rounding of sums and products of few terms of order one.
 constexpr double kRounding = 1e-14;
 
-/// A model error that is `size` in every norm about `offset`: bounded by it.
+/// A model error that is `size` in every norm about `offset`, and bounded by it.
 ModelError bounded(const Eigen::VectorXd& size, const Eigen::VectorXd& offset = {}) {
   ModelError error = model_error_of_size(size);
   for (Eigen::VectorXd& norms : error.higher) norms = size;
@@ -27,7 +27,7 @@ ModelError bounded(const Eigen::VectorXd& size, const Eigen::VectorXd& offset = 
   return error;
 }
 
-/// Of the first two periods and the later ones, each of another size and with another offset.
+/// Errors of the first two periods and of later ones, each with its own size and offset.
 ModelError of_a_drive() {
   ModelError error = bounded(Eigen::Vector3d(1e-3, 2e-3, 3e-3));
   error.first = {
@@ -98,7 +98,7 @@ TEST(DriveSurrogate, of_an_affine_system_moves_by_the_offsets_and_errs_by_the_re
   }
 }
 
-/// Everything that certificates are made of, stage by stage.
+/// Compares everything that certificates consist of, stage by stage.
 void expect_equal(const PredictedMotion& one, const PredictedMotion& other) {
   const std::vector<StageBudget> budgets = error_budget(one);
   const std::vector<StageBudget> other_budgets = error_budget(other);
@@ -156,11 +156,11 @@ TEST(DriveCertificate, of_a_plan_made_at_the_start_is_worse_than_that_of_one_mad
   }
 }
 
-// A push in the first period alone, into the wall: what holds for later ones knows nothing of it.
-// It may be known or not.
+// A push into the wall in the first period only, with its direction known or unknown: certificates
+// from the error of later periods miss it.
 TEST(DriveCertificate, without_the_first_periods_error_is_no_bound) {
-  constexpr double kWall = 0.25;  // m, ahead of where the model is after a period
-  constexpr double kPush = 0.5;   // m, and twenty-five deviations beyond the wall
+  constexpr double kWall = 0.25;  // m, ahead of the model's position after one period
+  constexpr double kPush = 0.5;   // m, twenty-five deviations beyond the wall
   const Case one = make_case(
       "pushed", dubins_car(), around(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(0.01)),
       Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal(), Eigen::VectorXd::Zero(1), {}, 1);
@@ -194,14 +194,14 @@ TEST(DriveSurrogate, cuts_each_periods_error_off_where_its_own_norms_say) {
   motion.belief_error = &error.first[0];
   motion.first_period = 1;
   const SurrogateStage start = affine_surrogates(motion).front();
-  // Nine errors: those of eight periods, and that of the belief.
+  // Nine errors: those of eight periods and that of the belief.
   const TruncatedError cut = truncate_error(error.first[0], 9, kWideCore);
   EXPECT_EQ(start.largest, cut.bound.largest());
   EXPECT_EQ(start.error, error.first[0].root_mean_square);
   const SurrogateStage next = affine_surrogates(motion)[1];
   const TruncatedError own = truncate_error(error.first[1], 9, kWideCore);
   EXPECT_TRUE((next.largest.array() >= own.bound.largest().array()).all());
-  // The heading's error is carried on as it is, and no residual is added to it.
+  // The heading's error is carried over unchanged, and no residual is added to it.
   EXPECT_NEAR(
       next.largest[models::Dubins::kHeading],
       cut.bound.largest()[models::Dubins::kHeading] + own.bound.largest()[models::Dubins::kHeading],

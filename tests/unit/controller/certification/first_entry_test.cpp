@@ -33,7 +33,7 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Rates of paths that have been unsafe so far, stages 1 … horizon.
+/// Rates of paths that have been unsafe up to each of the stages 1 … horizon.
 std::vector<double> rates_so_far(const PredictedMotion& motion, const SafeSet& safe_set,
                                  Generator& generator) {
   std::vector<Points> states;
@@ -49,10 +49,10 @@ std::vector<double> rates_so_far(const PredictedMotion& motion, const SafeSet& s
   return rates;
 }
 
-/// Five standard deviations below what was simulated.
+/// Five standard deviations below the simulated rate.
 double surely(double rate) { return rate - 5.0 * std::sqrt(rate / kPaths); }
 
-/// A block where the paths are in the middle of the horizon, beside most of them.
+/// A block at the paths' mid-horizon position, on one side, that covers `share` of them.
 SafeSet blocked(const Case& one, double share) {
   Generator generator(302);
   std::vector<Points> states;
@@ -70,7 +70,7 @@ SafeSet blocked(const Case& one, double share) {
   return safe_set;
 }
 
-/// The same with a long body in place of the point.
+/// The same with an elongated body instead of the point.
 SafeSet with_body(SafeSet safe_set) {
   safe_set.body = {
       .discs = {{.radius = 0.05, .offset = {0.0, 0.0}}, {.radius = 0.05, .offset = {0.15, 0.0}}},
@@ -124,7 +124,7 @@ TEST(FirstEntry, bounds_every_first_stage_of_simulated_paths) {
   EXPECT_GT(informative, 80);
 }
 
-/// A half-plane that turns towards the way, and where it is is known.
+/// A half-plane that turns towards the path, with known position.
 SafeSet closing_door() {
   SafeSet safe_set = unbounded_safe_set(3);
   safe_set.body = {.discs = {}, .x = 0, .y = 1, .heading = 2};
@@ -161,7 +161,7 @@ TEST(FirstEntry, bounds_what_enters_a_half_plane_that_turns) {
 
 TEST(FirstEntry, counts_once_what_stays_unsafe) {
   Generator generator(304);
-  // Noise that comes in early keeps the car beyond the wall.
+  // Noise that enters early keeps the car beyond the wall.
   Case one = dubins({}, 0.0);
   const PredictedMotion motion = one.motion();
   const SafeSet safe_set = unsafe_at_the_end(one, 1, 0.03);
@@ -238,7 +238,7 @@ TEST(FirstEntry, is_what_the_horizon_is_certified_by) {
     ASSERT_LT(entries, 0.9 * stages);
     EXPECT_DOUBLE_EQ(horizon_bound(certificates), entries);
   }
-  // Where it is not known, as in old traces, the stages' sum is what there is.
+  // Where it is unknown, as in old traces, only the sum over the stages is available.
   std::vector<StageCertificate> old(3, blank_certificate());
   for (StageCertificate& stage : old) stage.value = 0.01;
   EXPECT_DOUBLE_EQ(horizon_bound(old), 0.03);

@@ -54,13 +54,13 @@ double simulated(const Eigen::Vector3d& mean, const UnsafeSet& unsafe, int count
 TEST(InitialRisk, of_a_point_at_a_wall_is_its_normal_tail) {
   const Gaussian belief{.mean = Eigen::Vector3d(0.2, 0.0, 0.0),
                         .covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal()};
-  // Two standard deviations: Φ(−2); the far wall and the obstacle add nothing.
+  // Two standard deviations: Φ(−2); the far wall and the obstacle contribute nothing.
   EXPECT_NEAR(initial_risk(belief, corridor()), 0.022750131948179, 1e-9);
 }
 
 TEST(InitialRisk, bounds_what_is_simulated_and_is_not_far_above_it) {
   constexpr int kDraws = 400000;
-  constexpr double kMostAbove = 2.0;  // two discs, each of which is counted for itself
+  constexpr double kMostAbove = 2.0;  // two discs, each counted separately
   for (const bool body : {false, true}) {
     SafeSet safe_set = corridor();
     if (body) safe_set.body = two_discs();
@@ -82,7 +82,7 @@ TEST(InitialRisk, counts_the_body_and_not_the_position_alone) {
   SafeSet safe_set = corridor();
   const Gaussian belief = correlated({9.25, 0.0, 0.0}, 0.1);
   EXPECT_LT(initial_risk(belief, safe_set), 1e-6);
-  safe_set.body = two_discs();  // which reach 0.7 ahead
+  safe_set.body = two_discs();  // they extend 0.7 ahead
   EXPECT_GT(initial_risk(belief, safe_set), 1e-3);
   EXPECT_LT(initial_risk(belief, safe_set), 0.1);
 }
@@ -91,7 +91,7 @@ TEST(InitialRisk, of_a_known_state_is_0_or_1) {
   SafeSet safe_set = corridor();
   safe_set.body = two_discs();
   Gaussian belief{.mean = Eigen::Vector3d(5.0, 0.0, 0.0), .covariance = Eigen::Matrix3d::Zero()};
-  EXPECT_LE(initial_risk(belief, safe_set), 1e-9);  // what sums allow for rounding
+  EXPECT_LE(initial_risk(belief, safe_set), 1e-9);  // allowance of sums for rounding
   belief.mean[1] = 1.8;
   EXPECT_EQ(initial_risk(belief, safe_set), 1.0);
 }

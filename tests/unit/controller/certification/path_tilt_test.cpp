@@ -24,7 +24,7 @@ TEST(TiltGrid, dominates_the_standard_normal_density) {
       spreads[count - 1] = 0.4;
       const TiltGrid grid = tilt_grid(spreads);
       for (int trial = 0; trial < 200; ++trial) {
-        // Where the places that are left out add nothing any more.
+        // Where the omitted grid points no longer contribute.
         const Eigen::VectorXd at = random_matrix(generator, count, 1);
         double sum = 0.0;
         for (Eigen::Index i = 0; i < grid.weights.size(); ++i) {
@@ -68,8 +68,8 @@ Points functionals_of(const std::vector<Points>& noise, const PathFunctionals& f
   return values;
 }
 
-/// Draws of the plain law as draws of the tilted one: the functionals are moved, and the noise with
-/// them.
+/// Draws of the plain law turned into draws of the tilted one: the functionals are moved, and the
+/// noise with them.
 std::vector<Points> tilted(std::vector<Points> noise, const PathTilt& tilt) {
   const Points plain = functionals_of(noise, tilt.functionals);
   const Points wanted = (tilt.spreads.asDiagonal() * plain).colwise() + tilt.centre;
@@ -87,7 +87,7 @@ TEST(PathFunctionals, are_uncorrelated_and_of_variance_one) {
   const Points values = functionals_of(draw_noise(motion, generator), functionals);
   EXPECT_LE((sample_covariance(values, values) - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(),
             0.06);
-  // The same once more has nothing left to add.
+  // A functional that is already present adds nothing.
   std::vector<Eigen::VectorXd> again;
   for (const Eigen::MatrixXd& block : functionals.weights) again.emplace_back(block.col(1));
   PathFunctionals more = functionals;
@@ -121,7 +121,7 @@ TEST(PathTilt, independent_part_is_what_the_other_blocks_do_not_explain) {
   }
 }
 
-/// Of one functional and of two.
+/// Tilts of one functional and of two.
 std::vector<PathTilt> some_tilts(const PredictedMotion& motion, Generator& generator) {
   std::vector<PathTilt> tilts;
   for (const double spread : {0.25, 0.6}) {
@@ -171,7 +171,7 @@ TEST(PathTilt, surrogate_has_the_law_and_the_error_of_simulated_paths) {
           EXPECT_NEAR(covariance(i, i), law.covariance(i, i),
                       1.5 * five * deviation[i] * deviation[i] + 1e-12)
               << one.name << k;
-          // Five standard errors of a mean of squares, by the bound of the fourth powers.
+          // Five standard errors of a mean of squares, bounded by the fourth powers.
           const double fourth = stages[k].higher[0][i];
           EXPECT_LE(distance[i] * distance[i],
                     stages[k].error[i] * stages[k].error[i] + five * fourth * fourth + 1e-26)
@@ -183,7 +183,7 @@ TEST(PathTilt, surrogate_has_the_law_and_the_error_of_simulated_paths) {
 }
 
 TEST(PathTilt, smoothing_is_independent_of_the_error_and_of_the_rest) {
-  // x − z and z − n must not change where n does: held against the part of the last noise itself.
+  // x − z and z − n must not change with n: compared with the part of the last noise alone.
   Generator generator(214);
   for (const bool closed_loop : {false, true}) {
     const Case one = skewed_dubins({.closed_loop = closed_loop}, generator);
@@ -193,7 +193,7 @@ TEST(PathTilt, smoothing_is_independent_of_the_error_and_of_the_rest) {
       const std::vector<Points> noise = tilted(draw_noise(motion, generator), tilt);
       const Pairs pairs = pairs_under(motion, stages, noise, shifts_of(tilt));
       for (Eigen::Index k = 1; k <= motion.policy.horizon(); ++k) {
-        // What of the last noise no regression on the noise before it explains.
+        // The part of the last noise that regression on the earlier noise does not explain.
         Points before(3 * k, kSamples);
         for (Eigen::Index j = 0; j < k; ++j) before.middleRows(3 * j, 3) = noise[j];
         const Points rest = before.colwise() - before.rowwise().mean();
@@ -203,7 +203,7 @@ TEST(PathTilt, smoothing_is_independent_of_the_error_and_of_the_rest) {
         const Points part = last - slope * rest;
         const Eigen::MatrixXd covariance = sample_covariance(part, part);
         const Eigen::MatrixXd smoothing = smoothing_covariance(motion, k, {0, 1, 2}, tilt);
-        // Later noise that goes with it explains more of it, but is in no state yet.
+        // Correlated later noise explains more of it, but has not entered the state yet.
         const Eigen::MatrixXd more = covariance - smoothing;
         if (closed_loop) {
           EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(more).eigenvalues().minCoeff(),
@@ -228,7 +228,7 @@ TEST(PathTilt, that_concerns_headings_alone_leaves_what_smooths_beside_them) {
              smoothing_covariance(motion, 5, {0, 1, 2}))
                 .norm(),
             1e-12);
-  // Of what concerns positions only the noise that it does not touch is left.
+  // For a functional of positions, only the noise that it does not involve is left.
   weights.assign(9, Eigen::Vector3d::Zero());
   weights[0] = Eigen::Vector3d(1.0, 0.0, 0.0);
   PathTilt first{.functionals = {}, .centre = Eigen::VectorXd::Zero(1), .spreads = narrow};

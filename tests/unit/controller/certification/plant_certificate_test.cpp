@@ -1,4 +1,4 @@
-// What a model error changes of budgets, surrogates and certificates.
+// How a model error changes budgets, surrogates and certificates.
 #include <cmath>
 #include <vector>
 
@@ -19,7 +19,7 @@ using namespace testing;
 // Rounding of sums and products of few terms of order one.
 constexpr double kRounding = 1e-14;
 
-/// A model error that is `size` in every norm: bounded by it.
+/// A model error that is `size` in every norm, and bounded by it.
 ModelError bounded(const Eigen::VectorXd& size) {
   ModelError error = model_error_of_size(size);
   for (Eigen::VectorXd& norms : error.higher) norms = size;
@@ -82,12 +82,12 @@ TEST(PlantSurrogate, error_of_an_affine_system_adds_up_along_its_maps) {
     sum = stages[k - 1].transition.cwiseAbs() * sum + error.root_mean_square;
     EXPECT_LE((stages[k].error - sum).norm(), kRounding);
     EXPECT_LE((stages[k].higher[1] - sum).norm(), kRounding);
-    // Derivative bounds are rounded outwards, so that the cuts are charged for here, too.
+    // Derivative bounds are rounded outwards, so the cuts are charged for here as well.
     EXPECT_LE(stages[k].leaving, 1e-6);
   }
 }
 
-/// Away from the surrogate by the whole size, in every coordinate.
+/// The error pushes away from the surrogate with full size, in every coordinate.
 Points away(const Points& offset, const Eigen::VectorXd& size) {
   return size.asDiagonal() * offset.unaryExpr([](double one) { return one < 0.0 ? -1.0 : 1.0; });
 }
@@ -109,7 +109,7 @@ TEST(PlantSurrogate, bounds_what_an_error_does_that_drives_the_state_away_from_i
     for (std::size_t k = 0; k < stages.size(); ++k) {
       const Eigen::VectorXd distance = root_mean_squares(state - surrogate);
       for (Eigen::Index i = 0; i < distance.size(); ++i) {
-        // A sample's root is within 10 % of its law's, as for the model itself.
+        // A sample's root mean square is within 10 % of that of its law, as for the model itself.
         EXPECT_LE(distance[i], 1.1 * stages[k].error[i] + kRounding)
             << one.name << ", stage " << k << ", coordinate " << i;
       }
@@ -158,8 +158,8 @@ TEST(PlantSurrogate, regions_hold_the_state_where_only_the_error_moves_it) {
   }
 }
 
-/// An error that knows where the state is, though what it was made of is Gaussian and wide: it
-/// leads all into the wall that come near it. To count that width as smoothing would be wrong.
+/// An error that depends on the state, which itself is Gaussian and wide: it pushes everything near
+/// the wall into it. Counting that width as smoothing would be wrong.
 TEST(PlantCertificate, holds_for_an_error_that_is_none_but_near_the_wall) {
   constexpr double kWall = 3.0;   // m, and standard deviations
   constexpr double kReach = 0.3;  // m, of the error
@@ -180,8 +180,8 @@ TEST(PlantCertificate, holds_for_an_error_that_is_none_but_near_the_wall) {
   safe_set.bounds.upper[0] = kWall;
   const StageCertificate certificate =
       certify(motion, safe_set, error_budget(motion), CertificateEffort::kEvery).front();
-  // Who was within the reach of the wall, or beyond it, is unsafe but for five deviations; who was
-  // beyond it by less than that, and so may come back, counts half.
+  // States within reach of the wall are pushed beyond it, up to five deviations of the noise; of
+  // those already beyond it, which noise may bring back, half are counted.
   const double truth = near * (1.0 - 1e-6) + 0.5 * normal_cumulative(-kWall);
   EXPECT_GE(certificate.of("c1"), truth);
   EXPECT_GE(certificate.of("c2"), truth);
@@ -196,7 +196,7 @@ TEST(PlantSurrogate, cuts_are_charged_for_from_the_stage_that_rests_on_them) {
   PredictedMotion motion = one.motion();
   motion.model_error = &error;
   const std::vector<SurrogateStage> stages = affine_surrogates(motion);
-  // The heading is certain to be the surrogate's at stage 0, so that nothing is cut before stage 2.
+  // At stage 0 the heading equals the surrogate's with certainty, so nothing is cut before stage 2.
   EXPECT_EQ(stages[1].leaving, 0.0);
   const TruncatedError cut = truncate_error(error, 8, kWideCore);
   EXPECT_NEAR(cut.outside, 1e-6 / 8.0, 1e-20);
@@ -214,7 +214,7 @@ TEST(ErrorCut, is_as_far_off_as_the_highest_known_norm_asks) {
   EXPECT_NEAR(cut.bound.largest()[1], 0.2 / std::pow(1e-5 / 30.0, 0.25), 1e-10);
   EXPECT_EQ(cut.bound.largest()[2], 0.0);
   EXPECT_NEAR(cut.outside, (1e-4 + 1e-5) / 30.0, 1e-18);
-  // No error is none in every norm, also where only its mean square is stated.
+  // A zero error is zero in every norm, even if only its mean square is stated.
   EXPECT_EQ(cut.bound.higher(1)[2], 0.0);
   EXPECT_EQ(cut.bound.higher(1)[0], kInfinity);
 }
@@ -234,7 +234,7 @@ TEST(PlantSurrogate, unknown_norms_are_unknown_only_where_they_reach) {
 }
 
 TEST(PlantSurrogate, what_unknown_norms_of_a_heading_do_is_bounded_by_their_cut) {
-  // Straight ahead along x, a heading's error reaches x by the residual's slope only.
+  // Straight ahead along x, a heading error affects x only through the residual's slope.
   const Case one = dubins({}, 0.0);
   const ModelError known = bounded(Eigen::Vector3d(0.0, 0.0, 0.02));
   const ModelError unknown = model_error_of_size(known.root_mean_square);
@@ -298,7 +298,7 @@ TEST(PlantCertificate, grows_with_the_error_and_with_what_is_unknown_of_it) {
       EXPECT_GT(values[0], last[0]);
       EXPECT_GT(values[1], last[1]);
     }
-    // Little is lost by little.
+    // A small error costs little.
     if (size == 0.002) {
       EXPECT_LT(values[1], 10.0 * last[1] + 1e-3);
     }

@@ -25,8 +25,8 @@ struct Clamp {
   double upper;
 };
 
-/// Mean, slope and residual of the best affine fit, from its definition: by numerical quadrature of
-/// sat(ℓ), sat(ℓ)(ℓ − m)/s² and q² between the kinks, in the arithmetic of `Real`.
+/// Mean, slope and residual of the best affine fit by definition: numerical quadrature of sat(ℓ),
+/// sat(ℓ)(ℓ − m)/s² and q² between the kinks, in the arithmetic of `Real`.
 template <class Real>
 SaturationFit quadrature(const Clamp& clamp) {
   using std::exp;
@@ -35,7 +35,7 @@ SaturationFit quadrature(const Clamp& clamp) {
   const Real deviation = clamp.deviation;
   const Real lower = clamp.lower;
   const Real upper = clamp.upper;
-  const Real reach = 14;  // beyond lies less than 1e-43
+  const Real reach = 14;  // less than 1e-43 is beyond
   std::vector<Real> kinks = {-reach, reach};
   for (const Real& bound : {lower, upper}) {
     const Real kink = (bound - mean) / deviation;
@@ -110,7 +110,7 @@ TEST(Saturation, higher_norms_equal_simulated_ones) {
       }
     }
     for (std::size_t k = 0; k < sums.size(); ++k) {
-      // The mean of an eighth power of a variable with normal tails is within some 10 %, its root
+      // The mean of an eighth power of a variable with normal tails is within about 10 %, its root
       // within 2 %.
       EXPECT_NEAR(norms[k], std::pow(sums[k], 1.0 / kHigherOrders[k]), 0.02 * norms[k])
           << clamp.mean << " order " << kHigherOrders[k];
@@ -121,7 +121,7 @@ TEST(Saturation, higher_norms_equal_simulated_ones) {
 TEST(Saturation, higher_norms_grow_with_the_order_from_the_mean_square) {
   Generator generator(94);
   for (int repetition = 0; repetition < 200; ++repetition) {
-    // Not so far outside that the mean square is all allowance for cancellation.
+    // Not so far outside that the mean square consists only of the allowance for cancellation.
     const double deviation = std::pow(10.0, uniform(generator, -1.0, 1.0));
     const double lower = uniform(generator, -3.0, 3.0);
     const double upper = lower + uniform(generator, 0.01, 4.0);
@@ -132,7 +132,7 @@ TEST(Saturation, higher_norms_grow_with_the_order_from_the_mean_square) {
     const SaturationFit affine = fit(clamp);
     const auto norms =
         saturation_residual_norms(affine, clamp.mean, clamp.deviation, clamp.lower, clamp.upper);
-    // The mean square carries an allowance for cancellation.
+    // The mean square includes an allowance for cancellation.
     EXPECT_GE(norms[0], affine.residual * (1.0 - 1e-6) - 1e-6 * clamp.deviation);
     EXPECT_GE(norms[1], norms[0]);
   }
@@ -142,7 +142,7 @@ TEST(Saturation, higher_norms_grow_with_the_order_from_the_mean_square) {
 }
 
 TEST(Saturation, residual_of_rare_saturation_is_small_and_not_below_the_truth) {
-  // The second moments cancel to some 1e-17 of the variance: fifty digits see what is left.
+  // The second moments cancel to about 1e-17 of the variance: fifty digits resolve the rest.
   using Real = boost::multiprecision::cpp_bin_float_50;
   for (const double low : {-4.0, -6.0, -6.5, -7.0, -8.0}) {
     for (const double high : {4.5, 6.0, 8.0, 1000.0}) {
@@ -164,7 +164,7 @@ TEST(Saturation, residual_of_heavy_saturation_is_not_below_the_truth) {
       const double truth = quadrature<Real>(clamp).residual;
       const double residual = fit(clamp).residual;
       EXPECT_GE(residual, truth * (1.0 - 1e-15)) << mean << " " << width;
-      // Where nearly everything is clamped, moments of order (mean − bound)² cancel.
+      // Moments of order (mean − bound)² cancel where nearly everything is clamped.
       EXPECT_NEAR(residual, truth, 3e-7 * (1.0 + std::abs(mean))) << mean << " " << width;
     }
   }

@@ -26,7 +26,7 @@ double quadrature(double mean, double deviation, double lower, double upper, dou
     return std::max(0.0, 1.0 - distance * distance / (t * t)) *
            normal_density((y - mean) / deviation) / deviation;
   };
-  const double low = mean - 12.0 * deviation;  // beyond lies less than 1e-30
+  const double low = mean - 12.0 * deviation;  // less than 1e-30 is beyond
   const double high = mean + 12.0 * deviation;
   std::vector<double> kinks = {low, high};
   for (const double kink : {lower - t, lower, upper, upper + t}) {
@@ -55,7 +55,7 @@ TEST(SoftInterval, equals_numerical_quadrature) {
     const double expected = quadrature(mean, deviation, lower, upper, t);
     // 1e-9: the quadrature's own error and the allowance for rounding, which grows with 1/t².
     EXPECT_NEAR(value, expected, 1e-9);
-    EXPECT_GE(value, expected - 1e-13);  // never below but for the quadrature's rounding
+    EXPECT_GE(value, expected - 1e-13);  // never below, except for the quadrature's rounding
   }
 }
 
@@ -122,7 +122,7 @@ TEST(SoftUnsafe, is_at_least_the_simulated_expectation) {
 
 TEST(SoftUnsafe, correlated_obstacle_uses_the_most_unlikely_half_space) {
   // Heading unrestricted and correlated; the obstacle lies across the thin direction of the
-  // position's ellipse, where each axis alone would say little.
+  // position's ellipse, where single axes would give a poor bound.
   Eigen::Matrix3d covariance;
   covariance << 1.0, 0.95, 0.3,  //
       0.95, 1.0, 0.3,            //
@@ -145,12 +145,13 @@ TEST(Smoothed, without_error_tends_to_the_probability) {
   const double value = smoothed_probability(
       {centre.locations, centre.weights, Eigen::MatrixXd::Ones(1, 1)}, wall, 0.0);
   EXPECT_GE(value, probability);
-  // What lies within the least t of 1e-4 before the wall.
+  // The probability within the least t, 1e-4, before the wall.
   EXPECT_LE(value, probability + 1e-4 * normal_density(1.9999));
 }
 
 TEST(Smoothed, is_at_least_the_probability_under_an_adversarial_error) {
-  // The error that moves what is nearest to the wall onto it, until E|e|² is spent: the worst case.
+  // The worst case: the error that moves the states nearest to the wall onto it until E|e|² is
+  // spent.
   const double wall_at = 2.0;
   SafeSet wall = unbounded_safe_set(1);
   wall.bounds.upper[0] = wall_at;
@@ -170,8 +171,8 @@ TEST(Smoothed, is_at_least_the_probability_under_an_adversarial_error) {
     const double value = smoothed_probability(
         {centre.locations, centre.weights, Eigen::MatrixXd::Ones(1, 1)}, wall, radius);
     EXPECT_GE(value, worst - 1e-12) << radius;  // rounding of the bisection
-    // The bound is the dual of this problem and attained at its best t, which the search finds to
-    // a few percent; the value is flat about it.
+    // The bound is the dual of this problem and is attained at its best t, which the search finds
+    // to within a few percent; the value is flat around it.
     EXPECT_LE(value, 1.05 * worst) << radius;
   }
 }
@@ -188,7 +189,7 @@ TEST(Smoothed, search_that_ends_early_ends_with_a_bound_of_no_use) {
     for (const double useful : {-0.1, 0.0, 1e-6, 0.5 * full, 1.2 * full, 1.0}) {
       const double value = smoothed_probability({centres.locations, centres.weights, covariance},
                                                 room, radius, useful);
-      // Two searches in t: each ends within a few percent of the best.
+      // Two searches in t: each ends within a few percent of the optimum.
       EXPECT_GE(value, 0.97 * full);
       if (useful <= full) {
         EXPECT_GE(value, useful);

@@ -26,7 +26,7 @@ TEST(Smoothing, is_a_part_of_the_surrogate) {
           return models::symmetric_eigenvalues(matrix)[0];
         };
         EXPECT_GE(least(smoothing), -1e-15) << one.name;
-        // n is independent of the rest in the coordinates of `axes`, and only there.
+        // n is independent of the rest only in the coordinates of `axes`.
         const Eigen::MatrixXd rest = covariance - smoothing;
         EXPECT_GE(least(rest(axes, axes)), -1e-14 * covariance.trace())
             << one.name << ", stage " << k << ", axis " << axis;
@@ -37,8 +37,8 @@ TEST(Smoothing, is_a_part_of_the_surrogate) {
 }
 
 TEST(Smoothing, has_the_known_form_for_the_known_example) {
-  // Nothing is correlated: open loop all of the belief and of the noise in the position counts;
-  // with feedback what two noises bring, at first the belief and one.
+  // Nothing is correlated: in open loop all noise of the belief and of the stages in the position
+  // counts; with feedback that of the last two noises, at first the belief and one noise.
   const std::vector<Eigen::Index> position = {0, 1};
   const std::vector<Eigen::Index> all = {0, 1, 2};
   const Eigen::Matrix3d noise = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
@@ -75,15 +75,15 @@ TEST(Smoothing, leaves_out_what_moves_a_restricted_heading) {
   EXPECT_EQ(smoothing.row(2), Eigen::RowVector3d::Zero());
 }
 
-/// What of the positions in `draws` is independent of their headings, under `covariance`.
+/// The part of the positions in `draws` that is independent of their headings, under `covariance`.
 Points beside_heading(const Points& draws, const Eigen::MatrixXd& covariance) {
   const Eigen::Vector2d slope = covariance.col(2).head<2>() / covariance(2, 2);
   return draws.topRows(2) - slope * draws.row(2);
 }
 
 TEST(Smoothing, is_independent_of_the_error_and_of_the_rest) {
-  // n put together from the draws themselves, beside z − n and the error of the position, and
-  // beside the squares of the two: none may be correlated.
+  // n assembled from the draws, compared with z − n, the error of the position, and the squares of
+  // both: none may be correlated.
   Generator generator(116);
   for (const bool closed_loop : {false, true}) {
     const Case one = skewed_dubins({.closed_loop = closed_loop}, generator);

@@ -1,5 +1,5 @@
-// Plans of every system with all that their motions refer to, and pairs of simulated states and
-// surrogates, for tests of the Gaussian surrogate.
+// Plans of every system with everything that their motions refer to, and pairs of simulated states
+// and surrogates, for tests of the Gaussian surrogate.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace qsmpc::testing {
 
 constexpr int kSamples = 10000;
 
-/// A prescribed plan with all that its motion refers to.
+/// A prescribed plan with everything that its motion refers to.
 struct Case {
   std::string name;
   std::shared_ptr<const models::Dynamics> dynamics;
@@ -35,7 +35,7 @@ struct Case {
   }
 };
 
-/// How a case's inputs are fed back: not at all, by LQR, or by this gain.
+/// The feedback of a case's inputs: none, LQR, or this gain.
 struct Feedback {
   bool closed_loop = false;
   std::optional<Eigen::MatrixXd> gain = std::nullopt;
@@ -81,7 +81,7 @@ inline Case dubins(const Feedback& feedback, double input = 0.3, double width = 
                    Eigen::VectorXd::Constant(1, input), feedback);
 }
 
-/// Everything correlated with everything.
+/// All coordinates correlated.
 inline Case skewed_dubins(const Feedback& feedback, Generator& generator) {
   return make_case(
       "skewed dubins", dubins_car(),
@@ -121,10 +121,10 @@ struct Pairs {
   std::vector<controller::Points> state;
   std::vector<controller::Points> surrogate;
   std::vector<controller::Points>
-      noise;  ///< of the step that leads to the stage; at 0 what the belief drew
+      noise;  ///< noise of the step that leads to the stage; at 0 the belief's draws
 };
 
-/// What enters at the stages 0 … horizon.
+/// The draws that enter at the stages 0 … horizon.
 inline std::vector<controller::Points> draw_noise(const controller::PredictedMotion& motion,
                                                   Generator& generator) {
   NormalSampler belief(motion.belief.covariance);
@@ -138,7 +138,7 @@ inline std::vector<controller::Points> draw_noise(const controller::PredictedMot
   return result;
 }
 
-/// shifts: the noise's mean at every stage, which the stages' laws have in theirs; none: zero.
+/// shifts: the noise's mean at every stage, included in the stages' laws; none: zero.
 inline Pairs pairs_under(const controller::PredictedMotion& motion,
                          const std::vector<controller::SurrogateStage>& stages,
                          std::vector<controller::Points> noise,
@@ -180,8 +180,8 @@ inline Eigen::MatrixXd sample_covariance(const controller::Points& first,
   return a * b.transpose() / static_cast<double>(a.cols());
 }
 
-/// All systems, open loop, regulated, and with gains that nobody would choose; some of them
-/// saturated more often than not.
+/// All systems in open loop, with LQR, and with unreasonable gains, some of which saturate most of
+/// the time.
 inline std::vector<Case> all_cases(Generator& generator) {
   const Feedback lqr{.closed_loop = true};
   const auto gain = [](const Eigen::MatrixXd& matrix) {

@@ -14,8 +14,8 @@ using namespace testing;
 
 using Event = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
-/// Where each component of the surrogate's feedback K(z − m), and each coordinate in which the step
-/// is not affine, is within `core` deviations of its mean.
+/// Whether each component of the surrogate's feedback K(z − m), and each coordinate in which the
+/// step is not affine, is within `core` deviations of its mean.
 Event within_core(const PredictedMotion& motion, Eigen::Index k, const SurrogateStage& stage,
                   const Points& surrogate, double core) {
   const std::vector<bool> affine = affine_coordinates(motion.dynamics);
@@ -39,7 +39,7 @@ double share(const Event& event) {
   return static_cast<double>(event.count()) / static_cast<double>(event.size());
 }
 
-// With a narrow core some paths are lost, and all that is said of the error holds where none is.
+// Some paths leave a narrow core; the error bounds hold on all others.
 TEST(SurrogateCore, bounds_hold_inside_of_a_core_that_is_left) {
   Generator generator(115);
   int left = 0;
@@ -62,7 +62,7 @@ TEST(SurrogateCore, bounds_hold_inside_of_a_core_that_is_left) {
       if (k + 1 == stages.size()) continue;
       in_cores = in_cores && within_core(motion, static_cast<Eigen::Index>(k), stages[k],
                                          pairs.surrogate[k], kNarrowCore);
-      // Only steps that need their core are charged, for those before them as well.
+      // Only steps that need their core are charged, including the cores of the steps before them.
       if (stages[k + 1].leaving == leaving) continue;
       inside = in_cores;
       for (int i = 0; i < kSamples; ++i) {
@@ -80,8 +80,7 @@ TEST(SurrogateCore, bounds_hold_inside_of_a_core_that_is_left) {
   EXPECT_GT(left, 100);
 }
 
-// What the narrow core is for: where deviations are large, less is lost by leaving it than is
-// saved.
+// The purpose of the narrow core: for large deviations, leaving it costs less than it saves.
 TEST(SurrogateCore, narrow_one_is_left_more_often_and_has_smaller_errors) {
   const Feedback lqr{.closed_loop = true};
   for (const Case& one : {bicycle(lqr), dubins(lqr, 0.3, 0.3), cart_pole(lqr)}) {

@@ -59,7 +59,7 @@ TEST(UnicycleResidual, moments_equal_numerical_quadrature) {
 
 TEST(UnicycleResidual, moments_keep_their_digits_for_tiny_variances) {
   // Along the heading r is of second order, −(δ² − v)/2 with E = v²/2, across it of third, −δ³/6 +
-  // vδ/2 with v³/6; and so for two headings of covariance c, with c²/2 and c³/6.
+  // vδ/2 with v³/6; for two headings with covariance c this gives c²/2 and c³/6.
   for (const double variance : {1e-3, 1e-6, 1e-9, 1e-12, 1e-18, 1e-60}) {
     for (const double share : {1.0, 0.5, -0.7}) {
       const double c = share * variance;
@@ -74,7 +74,7 @@ TEST(UnicycleResidual, moments_keep_their_digits_for_tiny_variances) {
 }
 
 TEST(UnicycleResidual, moments_have_no_step_where_the_formula_changes) {
-  // Truth at 1e-3 and 1 in both directions: the derivative of the moments is bounded by 2.
+  // True values at 1e-3 and 1 in both directions: the derivative of the moments is bounded by 2.
   for (const double at : {1e-3, -1e-3, 1.0, -1.0}) {
     const double step = 1e-12 * std::abs(at);
     const double below = residual_moments(0.0, 1.0, 0.0, 1.0, at - step)(0, 0);
@@ -84,7 +84,7 @@ TEST(UnicycleResidual, moments_have_no_step_where_the_formula_changes) {
 }
 
 TEST(UnicycleResidual, moments_are_the_whole_unit_vector_for_huge_variances) {
-  // Nothing is left of the affine fit, and |e^{iφ}|² = 1. e^v overflows from 710 on.
+  // The affine fit vanishes, and |e^{iφ}|² = 1. e^v overflows from 710 on.
   for (const double variance : {60.0, 709.0, 2000.0, 1e6}) {
     const Eigen::Matrix2d moments = residual_moments(0.7, variance, 0.7, variance, variance);
     EXPECT_LE((moments - 0.5 * Eigen::Matrix2d::Identity()).norm(), 1e-12) << variance;
@@ -110,7 +110,7 @@ TEST(UnicycleResidual, is_zero_along_a_walk_with_known_headings) {
 }
 
 TEST(UnicycleResidual, carried_residuals_match_simulation) {
-  // Any affine maps will do: the headings of the process they make are jointly Gaussian.
+  // Any affine maps will do: the headings of the resulting process are jointly Gaussian.
   Generator generator(72);
   constexpr int kHorizon = 4;
   constexpr int kSamples = 100000;
@@ -147,7 +147,7 @@ TEST(UnicycleResidual, carried_residuals_match_simulation) {
     squares += sum.cwiseAbs2() / kSamples;
   }
   const Eigen::VectorXd expected = carried.root_mean_squares();
-  // Squares of numbers of second order in a normal one: a standard error of about a percent.
+  // Squares of second order in a normal variable: a standard error of about a percent.
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(std::sqrt(squares[axis]), expected[axis], 0.03 * expected[axis]) << axis;
   }

@@ -1,4 +1,4 @@
-// Walls beside the ends of a case's paths.
+// Walls next to the ends of a case's paths.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace qsmpc::testing {
 
-/// Unsafe are the highest `share` of the paths in this coordinate at the last stage.
+/// Makes the highest `share` of the paths in this coordinate unsafe at the last stage.
 inline controller::SafeSet unsafe_at_the_end(const Case& one, Eigen::Index axis, double share) {
   constexpr int kDrawn = 20000;
   Generator generator(217);

@@ -17,8 +17,8 @@ namespace worst_case_test {
 using namespace testing;
 constexpr double kRounding = 1e-13;  // sums of a few numbers of at most one
 
-/// min over λ ≥ 0 of λ r² + Σ π (1 − λ d²)₊, the dual: piecewise linear and convex in λ, so that
-/// its least value is taken at a kink λ = 1/d² or at 0.
+/// min over λ ≥ 0 of λ r² + Σ π (1 − λ d²)₊, the dual: piecewise linear and convex in λ, so the
+/// minimum is at a kink λ = 1/d² or at 0.
 double dual(const Eigen::VectorXd& distances, const Eigen::VectorXd& weights, double radius) {
   const auto value = [&](double lambda) {
     return lambda * radius * radius +
@@ -47,7 +47,7 @@ TEST(WorstCase, equals_the_dual_problem) {
 TEST(WorstCase, two_points_by_hand) {
   const Eigen::Vector2d distances(1.0, 2.0);
   const Eigen::Vector2d weights(0.25, 0.75);
-  // 0.25 · 1² is spent on the first point; 0.75 more remains, worth 0.75/2² of the second.
+  // 0.25 · 1² is spent on the first point; the remaining 0.75 moves 0.75/2² of the second.
   EXPECT_NEAR(worst_case_probability(distances, weights, 1.0), 0.25 + 0.1875, kRounding);
   EXPECT_NEAR(worst_case_probability(distances, weights, 0.1), 0.01, kRounding);
   EXPECT_NEAR(worst_case_probability(distances, weights, 0.5), 0.25, kRounding);
@@ -65,7 +65,7 @@ TEST(WorstCase, infinite_radius_gives_one_and_infinite_distance_is_out_of_reach)
   const Eigen::Vector2d weights(0.4, 0.6);
   EXPECT_EQ(worst_case_probability(distances, weights, kInfinity), 1.0);
   EXPECT_DOUBLE_EQ(worst_case_probability(distances, weights, 1e6), 0.4);
-  // A radius whose square overflows is as good as infinite.
+  // A radius whose square overflows counts as infinite.
   EXPECT_EQ(worst_case_probability(Eigen::Vector2d(1e200, 1.0), weights, 1e180), 1.0);
 }
 
@@ -119,7 +119,7 @@ TEST(LinearTransportProbability, spends_distances_in_the_order_of_their_size) {
   DiscreteMeasure measure{.locations = Points(2, 3), .weights = Eigen::Vector3d(0.2, 0.3, 0.5)};
   measure.locations << 0.5, 2.0, 4.0,  //
       5.0, 5.0, 5.0;
-  // All of the first costs 0.1, a third of the second 0.2.
+  // All of the first point costs 0.1, a third of the second 0.2.
   EXPECT_NEAR(linear_transport_probability(measure, room, 0.3), 0.3, kRounding);
   EXPECT_EQ(linear_transport_probability(measure, room, 0.0), 0.0);
   EXPECT_EQ(linear_transport_probability(measure, room, 100.0), 1.0);
@@ -148,7 +148,8 @@ TEST(ThesisProbability, takes_the_norm_of_the_face_distances_and_ignores_obstacl
       .obstacles = {Box{.lower = Eigen::Vector2d(1.0, 5.0), .upper = Eigen::Vector2d(1.5, 5.5)}}};
   const DiscreteMeasure point{.locations = Eigen::Vector2d(1.0, 5.0),
                               .weights = Eigen::VectorXd::Ones(1)};
-  // Distance 5 as printed, spent linearly: 1/5; the point is in fact on an obstacle.
+  // The published formula: distance 5, spent linearly, gives 1/5; the point is in fact on an
+  // obstacle.
   EXPECT_NEAR(thesis_probability(point, room.bounds, 1.0), 0.2, kRounding);
   EXPECT_EQ(worst_case_probability(point, room, 0.0), 1.0);
 }

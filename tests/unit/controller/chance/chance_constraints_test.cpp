@@ -1,4 +1,4 @@
-// The chance constraints of the literature against what their sources say of them.
+// The chance constraints of the literature, checked against their sources' statements.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -24,7 +24,7 @@ std::unique_ptr<const models::Dynamics> cart() {
   return models::make_dynamics("double_integrator", {}, kTimeStep);
 }
 
-/// Wants to be beyond the wall at x = 2, and may come as near as the constraint lets it.
+/// Aims beyond the wall at x = 2 and may approach it as far as the constraint allows.
 ChancePlannerSettings wall_settings(const std::string& constraint) {
   ChancePlannerSettings settings;
   PlannerSettings& problem = settings.problem;
@@ -48,7 +48,7 @@ Gaussian cart_belief() {
   return {.mean = Eigen::Vector2d(0.5, 0.0), .covariance = 0.02 * Eigen::Matrix2d::Identity()};
 }
 
-/// Mean and deviation of the position at a stage, from the plan's inputs and gains.
+/// Mean and standard deviation of the position at a stage, from the plan's inputs and gains.
 struct Position {
   double mean;
   double deviation;
@@ -81,7 +81,7 @@ TEST(Cone, is_exact_for_a_linear_system_and_a_wall) {
     for (const Position& at : positions(*system, plan.policy, settings.problem.noise_covariance)) {
       most = std::max(most, 0.5 * std::erfc((kWall - at.mean) / at.deviation / std::sqrt(2.0)));
     }
-    // The probability beyond the wall at the stage that comes nearest: kept, and used up.
+    // The probability beyond the wall at the closest stage: the limit is kept and used up.
     EXPECT_LE(most, settings.chance.risk);
     EXPECT_GT(most, 0.97 * settings.chance.risk);
   }
@@ -96,7 +96,7 @@ TEST(Cantelli, is_attained_by_the_law_on_two_points) {
   const double risk = settings.chance.risk;
   double nearest = kInfinity;
   for (const Position& at : positions(*system, plan.policy, settings.problem.noise_covariance)) {
-    // With probability δ at the wall, else so that mean and variance are right.
+    // With probability δ at the wall, else where mean and variance come out right.
     const double up = std::sqrt((1.0 - risk) / risk) * at.deviation;
     const double down = -std::sqrt(risk / (1.0 - risk)) * at.deviation;
     EXPECT_NEAR(risk * up + (1.0 - risk) * down, 0.0, 1e-12);
@@ -134,7 +134,7 @@ TEST(Scenario, violates_no_more_often_than_its_bound_over_1000_draws) {
   ChancePlanner planner(*system, settings);
   const Eigen::Index samples = planner.paths();
   EXPECT_EQ(samples, scenario_samples(0.2, 0.9, 2));
-  // Fresh paths, of which only the noise's part of the positions is needed: the system is linear.
+  // Fresh paths; only the noise's contribution to the positions is needed, as the system is linear.
   constexpr Eigen::Index kFresh = 4000;
   Points away(2, kFresh);
   for (Eigen::Index i = 0; i < kFresh; ++i) {
@@ -159,10 +159,11 @@ TEST(Scenario, violates_no_more_often_than_its_bound_over_1000_draws) {
     sum += violation;
     if (violation > settings.chance.risk) ++above;
   }
-  // Of 1000 draws at most as many are above δ as the confidence leaves, 99.9 % of the time.
+  // Of 1000 draws, no more exceed δ than the confidence allows, with probability 99.9 %.
   const boost::math::binomial most(kDraws, 1.0 - settings.chance.confidence);
   EXPECT_LE(above, boost::math::quantile(boost::math::complement(most, 1e-3)));
-  // The mean violation is at most d/(S + 1); half of it shows that the samples matter.
+  // The mean violation is at most d/(S + 1); that it is not far below shows that the samples
+  // matter.
   const double bound = 2.0 / static_cast<double>(samples + 1);
   EXPECT_LT(sum / kDraws, 1.1 * bound);
   EXPECT_GT(sum / kDraws, 0.2 * bound);
@@ -192,7 +193,8 @@ TEST(SmoothedCvar, tends_to_the_mean_of_the_worst_share) {
       const double smoothed = smoothed_cvar(sample.array(), risk, smoothing, weights);
       EXPECT_GE(smoothed, truth - 1e-12);
       EXPECT_LE(smoothed, truth + smoothing / (4.0 * risk) + 1e-12);
-      EXPECT_NEAR(weights.sum(), 1.0, 1e-9);  // all losses one more: so is the tail's mean
+      EXPECT_NEAR(weights.sum(), 1.0, 1e-9);  // raising all losses by one raises the tail's mean by
+                                              // one
       Eigen::ArrayXd other;
       for (const Eigen::Index i : {0, 17, 200}) {
         Eigen::ArrayXd up = sample.array();
@@ -237,7 +239,8 @@ TEST(DisturbanceFeedback, costs_no_more_than_state_feedback_with_given_gains) {
   settings.problem.horizon = 5;
   settings.problem.max_evaluations = 2000;
   settings.chance.paths = 60;
-  // Answers to the start would need a memory of it: exact knowledge of it leaves the noises.
+  // Feedback from the initial state would need a memory of it; with exact knowledge only the noises
+  // are left.
   const Gaussian start{.mean = cart_belief().mean, .covariance = Eigen::Matrix2d::Zero()};
   ChancePlannerSettings noise = settings;
   noise.chance.memory = 5;

@@ -1,4 +1,4 @@
-// Plans that keep chance constraints: on the way round a block, again and again, and in trouble.
+// Plans under chance constraints: around a block, repeatedly, and in infeasible situations.
 #include "controller/chance/chance_planner.hpp"
 
 #include <chrono>
@@ -20,7 +20,7 @@ ChancePlannerSettings settings_of(const std::string& constraint) {
   ChancePlannerSettings settings{.problem = block_settings(), .constraint = constraint};
   settings.problem.noise_covariance = Eigen::Vector3d(5e-5, 5e-5, 5e-5).asDiagonal();
   settings.problem.cost.angles = {2};
-  // Farther away: there is room to turn for every method.
+  // Farther away, so that every method has room to turn.
   std::get<Box>(settings.problem.safe_set.obstacles.front().form).lower[0] += 0.3;
   std::get<Box>(settings.problem.safe_set.obstacles.front().form).upper[0] += 0.3;
   settings.chance.paths = 50;
@@ -48,7 +48,7 @@ TEST_P(EveryConstraint, drives_round_a_block_without_touching_it) {
   Gaussian belief = small_belief();
   for (int period = 0; period < 25; ++period) {
     const ChancePlan& plan = planner.plan(belief, period);
-    // Paths that are drawn anew may ask for what those before did not, by a little.
+    // Redrawn paths may require slightly more than the previous ones did.
     const bool samples = chance_constraint_entry(GetParam()).samples;
     EXPECT_LE(plan.violation, samples ? 5e-3 : 0.0) << "period " << period;
     EXPECT_EQ(plan.status == SolverStatus::kInfeasible, plan.violation > 0.0);
@@ -78,7 +78,7 @@ TEST_P(EveryConstraint, the_same_after_a_reset) {
 TEST_P(EveryConstraint, says_where_it_cannot_be_kept) {
   const auto car = dubins_car();
   ChancePlannerSettings settings = settings_of(GetParam());
-  // The only way is through: a block from wall to wall, which the car cannot stop before.
+  // The only way is blocked: a block from wall to wall, before which the car cannot stop.
   std::get<Box>(settings.problem.safe_set.obstacles.front().form).lower[1] = -20.0;
   std::get<Box>(settings.problem.safe_set.obstacles.front().form).upper[1] = 20.0;
   std::get<Box>(settings.problem.safe_set.obstacles.front().form).lower[0] = 0.3;
@@ -122,7 +122,7 @@ TEST(Tube, keeps_room_for_what_feedback_adds_to_the_input) {
   const auto car = dubins_car();
   ChancePlannerSettings settings = settings_of("cone");
   settings.problem.closed_loop = true;
-  settings.problem.cost.target << 0.0, 6.0, 0.0;  // to the left at once: as sharp as may be
+  settings.problem.cost.target << 0.0, 6.0, 0.0;  // to the left at once, as sharply as possible
   settings.problem.safe_set.obstacles.clear();
   ChancePlanner cone(*car, settings);
   EXPECT_NEAR(cone.plan(small_belief(), 0).policy.inputs(0, 1), 2.0, 1e-6);

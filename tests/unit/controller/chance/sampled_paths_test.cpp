@@ -1,4 +1,4 @@
-// Sampled paths: where they go, what they cost, and the derivatives by the decision.
+// Sampled paths: states, costs, and the derivatives by the decision.
 #include "controller/chance/sampled_paths.hpp"
 
 #include <cmath>
@@ -71,7 +71,7 @@ void expect_gradient(SampledPaths& paths, const QuadraticCost& cost, const Eigen
 TEST(SampledPaths, derivatives_in_open_loop_with_feedback_and_with_answers_to_noise) {
   const auto car = dubins_car();
   const PlannerSettings settings = dubins_settings();
-  // Noise that is large enough for some inputs to saturate with feedback.
+  // Enough noise to saturate some inputs under feedback.
   const PathDraw draw = draw_of(settings, 0.4);
   const std::vector<Eigen::MatrixXd> gains = some_gains(settings.horizon);
   const Eigen::VectorXd mean = Eigen::Vector3d(0.1, -0.2, 0.3);
@@ -118,7 +118,7 @@ TEST(SampledPaths, go_where_the_model_goes_step_by_step) {
   constexpr Eigen::Index kPath = 3;
   Eigen::VectorXd state = draw.start.col(kPath);
   Eigen::VectorXd nominal = mean;
-  // Behind the inputs: none for stage 0, one matrix for stage 1, then two, the newest noise first.
+  // After the inputs: no matrix for stage 0, one for stage 1, then two each, newest noise first.
   Eigen::Index matrix = settings.horizon;
   for (int k = 0; k < settings.horizon; ++k) {
     double input = z[k] + (gains[k] * (state - nominal))[0];
@@ -145,7 +145,7 @@ TEST(SampledPaths, a_decision_moves_on_by_a_stage) {
   for (int block = 0; block < 5; ++block) z.segment<3>(4 + 3 * block).setConstant(10.0 + block);
   paths.shift(z);
   EXPECT_EQ(Eigen::Vector4d(z.head<4>()), Eigen::Vector4d(1.0, 2.0, 3.0, 3.0));
-  // Stage 1 has now what stage 2 had for its newest noise, and stage 2 what stage 3 had.
+  // Stage 1 now has stage 2's matrix for the newest noise, and stage 2 has stage 3's matrices.
   const std::vector<double> expected{11.0, 13.0, 14.0, 13.0, 14.0};
   for (int block = 0; block < 5; ++block) EXPECT_EQ(z[4 + 3 * block], expected[block]);
 }

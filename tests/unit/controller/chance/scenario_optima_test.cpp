@@ -1,4 +1,4 @@
-// "scenario" against the optima that CasADi's IPOPT finds for the same sampled paths
+// "scenario" compared with the optima found by CasADi's IPOPT for the same sampled paths
 // (tests/data/scenario_optima/make_problems.py).
 #include <fstream>
 #include <string>
@@ -41,7 +41,7 @@ ChancePlannerSettings settings_of(const Json& problem) {
                   .input = Eigen::MatrixXd::Constant(1, 1, problem["cost_input"].get<double>()),
                   .terminal = vector_of(problem["cost_terminal"]).asDiagonal(),
                   .target = vector_of(problem["target"])};
-  planned.penalty = {.box = 500.0, .obstacle = 500.0, .length = 0.1};  // of the first guess
+  planned.penalty = {.box = 500.0, .obstacle = 500.0, .length = 0.1};  // for the first guess
   SafeSet& safe = planned.safe_set;
   safe = unbounded_safe_set(3);
   safe.bounds.upper[1] = problem["wall"];

@@ -1,4 +1,4 @@
-// What holds for every controller in the table, a new one included.
+// Requirements on every controller in the table, including new ones.
 #include "controller/control/controller.hpp"
 
 #include <memory>
@@ -20,12 +20,12 @@ struct Choice {
   ControllerSettings settings;
 };
 
-/// Every controller, "lqr" about both.
+/// Every controller; "lqr" about both references.
 std::vector<Choice> choices(const PlannerSettings& problem) {
   std::vector<Choice> all;
   for (const ControllerEntry& entry : controllers()) {
     for (const LqrAbout about : {LqrAbout::kPath, LqrAbout::kTarget}) {
-      // A risk that the small room has space for, whatever the method.
+      // A risk that the small room allows, whatever the method.
       all.push_back(
           {entry.name, {.problem = problem, .lqr_about = about, .chance = {.risk = 0.3}}});
     }
@@ -33,7 +33,7 @@ std::vector<Choice> choices(const PlannerSettings& problem) {
   return all;
 }
 
-/// The inputs of some periods, each from another place and seen with an error.
+/// The inputs of some periods, each from a different state, observed with an error.
 std::vector<Eigen::VectorXd> inputs_of(Controller& controller) {
   std::vector<Eigen::VectorXd> inputs;
   for (int k = 0; k < 4; ++k) {

@@ -1,4 +1,4 @@
-// Certificates of whatever a controller gives: its particles, its policy alone, or one input.
+// Certificates of any decision: with particles, with a policy only, or with a single input.
 #include "controller/control/decision_motion.hpp"
 
 #include <memory>
@@ -19,7 +19,7 @@ using namespace testing;
 
 constexpr int kPaths = 20000;
 
-/// The car on its way past a wall that it comes near.
+/// The car on a path close to a wall.
 PlannerSettings beside_a_wall() {
   PlannerSettings problem = dubins_settings();
   problem.cost.target << 5.0, 0.0, 0.0;
@@ -27,7 +27,7 @@ PlannerSettings beside_a_wall() {
   return problem;
 }
 
-/// The truth is above this with a probability of at most 1e-6.
+/// Clopper–Pearson: the truth is below this with a probability of at most 1e-6.
 double lower_limit(int successes) {
   if (successes == 0) return 0.0;
   return boost::math::binomial_distribution<>::find_lower_bound_on_p(kPaths, successes, 1e-6);
@@ -60,7 +60,7 @@ TEST(DecisionMotion, of_a_planners_decision_is_the_planners_own) {
   }
 }
 
-/// Every controller's certificates hold for the model under what it decided.
+/// Every controller's certificates hold for the model under its decision.
 TEST(DecisionMotion, certificates_of_every_controller_hold_for_simulated_paths) {
   const auto car = dubins_car();
   const PlannerSettings problem = beside_a_wall();
@@ -74,7 +74,7 @@ TEST(DecisionMotion, certificates_of_every_controller_hold_for_simulated_paths) 
       const ControllerSettings settings{.problem = problem, .lqr_about = about};
       const auto controller = make_controller(entry.name, *car, settings);
       DecisionMotion motions(*car, problem);
-      // The second place is near enough to the wall for a next step to matter.
+      // The second place is close enough to the wall for the next step to matter.
       for (const double y : {0.0, 0.12}) {
         belief.mean[1] = y;
         const Eigen::VectorXd seen = belief.mean + Eigen::Vector3d(0.02, 0.03, 0.1);
@@ -110,7 +110,7 @@ TEST(DecisionMotion, without_a_policy_is_the_next_step_alone_under_the_input) {
   const PredictedMotion motion = motions.of(situation, decision, known);
   EXPECT_EQ(motion.policy.inputs, Eigen::MatrixXd::Constant(1, 1, 0.7));
   EXPECT_TRUE(motion.policy.gains.front().isZero(0.0));
-  // The model's step from the known state, whose law is the noise about it.
+  // The model's step from the known state; its law is the noise about it.
   const Eigen::MatrixXd path = nominal_states(*car, seen, decision.input);
   EXPECT_EQ(motion.belief_w2, 0.0);
   EXPECT_EQ(motion.prediction.stepped.front().col(0), path.col(1));

@@ -1,4 +1,4 @@
-// The regulator against closed forms, and the nominal controller against the planner it is.
+// The regulator compared with closed forms, and the nominal controller with the equivalent planner.
 #include <cmath>
 #include <memory>
 
@@ -14,7 +14,7 @@ namespace lqr_controller_test {
 
 using namespace testing;
 
-/// The double integrator about its origin, with bounds too wide to be met.
+/// The double integrator about its origin, with bounds too wide to be active.
 struct Integrator {
   std::unique_ptr<const models::Dynamics> dynamics =
       models::make_dynamics("double_integrator", {}, 0.1);

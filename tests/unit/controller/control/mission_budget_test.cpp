@@ -1,4 +1,4 @@
-// A mission's budget: what is left for a plan, and drives that never spend more.
+// A mission's budget: what remains for a plan, and drives that never overspend.
 #include "controller/control/mission_budget.hpp"
 
 #include <cmath>
@@ -36,21 +36,21 @@ TEST(MissionBudget, limits_nothing_without_a_limit) {
 TEST(MissionBudget, gives_the_next_stage_what_is_left_and_a_plan_its_share) {
   const auto car = dubins_car();
   MissionBudget budget(*car, 0.02, Eigen::Vector3d(10.0, 0.0, 0.0));
-  // As long as no plan tells how fast it goes, by the periods that there are at most.
+  // Before any plan gives the speed, the maximum number of periods is used.
   RiskLimits limits = budget.limits(Eigen::Vector3d::Zero(), 10, 200);
   EXPECT_DOUBLE_EQ(limits.first, 0.02);
   EXPECT_DOUBLE_EQ(limits.plan, 0.02 * 10.0 / 200.0);
   EXPECT_TRUE(std::isinf(limits.stage));
   budget.spend(straight_plan(0.004));
   EXPECT_DOUBLE_EQ(budget.spent(), 0.004);
-  // 10 m, and a fifth more, at 0.2 m a period.
+  // 10 m plus a fifth, at 0.2 m per period.
   limits = budget.limits(Eigen::Vector3d::Zero(), 10, 200);
   EXPECT_DOUBLE_EQ(limits.first, 0.016);
   EXPECT_NEAR(limits.plan, 0.016 * 10.0 / 60.0, 1e-12);
-  // Near the target, or near the end of the drive, the plan may have it all.
+  // Near the target or the end of the drive, the plan may use the whole budget.
   EXPECT_DOUBLE_EQ(budget.limits(Eigen::Vector3d(9.5, 0.0, 0.0), 10, 200).plan, 0.016);
   EXPECT_DOUBLE_EQ(budget.limits(Eigen::Vector3d::Zero(), 10, 4).plan, 0.016);
-  // What is overspent leaves nothing, and a new drive begins anew.
+  // Overspending leaves nothing; a new drive starts afresh.
   budget.spend(straight_plan(0.5));
   EXPECT_EQ(budget.limits(Eigen::Vector3d::Zero(), 10, 200).first, 0.0);
   budget.reset();
@@ -58,7 +58,6 @@ TEST(MissionBudget, gives_the_next_stage_what_is_left_and_a_plan_its_share) {
   EXPECT_DOUBLE_EQ(budget.limits(Eigen::Vector3d::Zero(), 10, 200).first, 0.02);
 }
 
-// Of plans whose late stages bear their risk little is spent, as they are planned anew before.
 TEST(MissionBudget, a_known_way_counts_for_as_long_as_it_is) {
   const auto car = dubins_car();
   MissionBudget budget(*car, 0.02, Eigen::Vector3d(100.0, 0.0, 0.0));
@@ -69,6 +68,7 @@ TEST(MissionBudget, a_known_way_counts_for_as_long_as_it_is) {
   EXPECT_LT(budget.limits(start, 10, 6000, 1200.0).plan, straight);
 }
 
+// Plans whose late stages carry their risk spend little, as they are replaced before.
 TEST(MissionBudget, gives_plans_more_where_little_of_what_they_are_certified_is_spent) {
   const auto car = dubins_car();
   MissionBudget budget(*car, 0.02, Eigen::Vector3d(100.0, 0.0, 0.0));
@@ -83,7 +83,7 @@ TEST(MissionBudget, gives_plans_more_where_little_of_what_they_are_certified_is_
   // Never more than what is left.
   for (int n = 0; n < 10000; ++n) budget.spend(plan);
   EXPECT_LE(budget.limits(Eigen::Vector3d::Zero(), 10, 600).plan, 0.02 - budget.spent());
-  // Plans that were certified 1 throughout do not count as promises that were not called in.
+  // Plans certified 1 throughout do not count as unused risk.
   budget.reset();
   for (int n = 0; n < 3; ++n) {
     plan.risk.stages.assign(10, 1.0);
@@ -95,7 +95,7 @@ TEST(MissionBudget, gives_plans_more_where_little_of_what_they_are_certified_is_
 }
 
 // Past a block, on the model with its noise: the certificates of the plans in force add up to no
-// more than the budget, and a smaller one keeps farther off.
+// more than the budget, and a smaller budget gives more clearance.
 TEST(MissionBudget, drives_never_spend_more) {
   const auto car = dubins_car();
   ControllerSettings settings;

@@ -1,4 +1,4 @@
-// The shield: silent where the other's next step is certified, and in its way where it is not.
+// The shield: passive where the other's next step is certified, and intervening where it is not.
 #include <memory>
 #include <stdexcept>
 
@@ -14,7 +14,7 @@ namespace shield_controller_test {
 
 using namespace testing;
 
-/// A block beside the way: turning towards it is worse than turning away.
+/// A block beside the path: turning towards it is worse than turning away.
 ControllerSettings settings_beside(double distance) {
   ControllerSettings settings{.problem = dubins_settings()};
   PlannerSettings& problem = settings.problem;
@@ -70,7 +70,7 @@ TEST(Shield, overrules_what_is_certified_above_the_limit) {
 
 TEST(Shield, says_where_no_plan_is_within_the_limit) {
   const auto car = dubins_car();
-  const ControllerSettings settings = settings_beside(-0.5);  // inside
+  const ControllerSettings settings = settings_beside(-0.5);  // inside the block
   const Gaussian belief = small_belief();
   const Eigen::VectorXd seen = belief.mean;
   const auto shield = make_controller("shield", *car, settings);

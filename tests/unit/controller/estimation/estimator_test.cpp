@@ -1,4 +1,4 @@
-// What holds for every estimator in the table, and for each of them.
+// Requirements on every estimator in the table, and properties of each one.
 #include "controller/estimation/estimator.hpp"
 
 #include <memory>
@@ -42,7 +42,7 @@ TEST(Estimators, give_laws_that_depend_on_nothing_but_their_arguments) {
     EXPECT_EQ(first.covariance, second.covariance);
     EXPECT_NO_THROW(check_gaussian(first));
     EXPECT_EQ(first.covariance, first.covariance.transpose());
-    // Nothing is known better than the noise that comes in.
+    // No coordinate is known better than the incoming noise allows.
     EXPECT_GE(models::symmetric_eigen(first.covariance - noise()).values.minCoeff(), -1e-15);
   }
 }
@@ -75,7 +75,7 @@ TEST(LastMeasurementEstimator, spreads_what_is_seen_as_the_linearised_step_does)
   const Gaussian posterior = estimator->correct(dubins_belief(), seen);
   EXPECT_EQ(posterior.covariance, sensor());
   const Gaussian belief = estimator->predict(posterior, input);
-  // By draws through the step itself; small ones, so that it is nearly linear.
+  // By draws through the step itself; small ones, so that the step is nearly linear.
   constexpr double kSmall = 1e-3;
   const Eigen::MatrixXd root = models::cholesky_factor(sensor());
   std::mt19937_64 generator(5);

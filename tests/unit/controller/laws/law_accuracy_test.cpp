@@ -1,4 +1,4 @@
-// What theory says of each method's moments, and how methods come to the truth as they grow.
+// Theoretical properties of each method's moments, and convergence of the methods to the truth.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -72,7 +72,7 @@ const std::vector<UnscentedSettings>& unscented_choices() {
 TEST(Unscented, mean_is_exact_on_quadratic_maps_whatever_the_settings) {
   for (const UnscentedSettings& settings : unscented_choices()) {
     const StageLaw law = quadratic_case().laws("unscented", {.unscented = settings}).back();
-    // Differences over alpha = 1e-3 of the spread lose six digits of sixteen.
+    // Differences over alpha = 1e-3 of the spread lose six of sixteen digits.
     EXPECT_LE((mean_of(law) - quadratic_moments().mean).norm(), 1e-9);
   }
 }
@@ -93,7 +93,7 @@ TEST(Unscented, covariance_is_exact_on_a_quadratic_map_of_one_state_where_theory
     const StageLaw law = made.laws("unscented", {.unscented = settings}).back();
     EXPECT_NEAR(covariance_of(law)(0, 0), exact, 1e-9);
   }
-  // And by (α² κ + β − 2) P² not, elsewhere.
+  // And elsewhere it is off by (α² κ + β − 2) P².
   const StageLaw other =
       made.laws("unscented", {.unscented = {.alpha = 1.0, .beta = 0.0, .kappa = 0.5}}).back();
   EXPECT_NEAR(covariance_of(other)(0, 0), exact - 1.5 * variance * variance, 1e-9);
@@ -114,7 +114,7 @@ TEST(Unscented, refuses_settings_with_covariances_that_may_be_indefinite) {
 
 TEST(Linearised, leaves_a_clamped_input_out_of_the_derivative) {
   LawCase made = linear_case(1);
-  made.policy.bounds.upper.setConstant(-0.1);  // below the policy's input at the mean, 0
+  made.policy.bounds.upper.setConstant(-0.1);  // below the policy's input at the mean, which is 0
   made.policy.bounds.lower.setConstant(-0.2);
   made.policy.inputs.setConstant(0.0);
   Eigen::Matrix2d by_state;
@@ -125,7 +125,7 @@ TEST(Linearised, leaves_a_clamped_input_out_of_the_derivative) {
 }
 
 TEST(PolynomialChaos, moments_are_exact_on_polynomials_of_its_order) {
-  for (const int most_nodes : {1, 1000}) {  // sparse, and the product
+  for (const int most_nodes : {1, 1000}) {  // sparse grid and product grid
     for (const int order : {2, 3, 5}) {
       const StageLaw law = quadratic_case()
                                .laws("polynomial_chaos", {.order = order, .most_nodes = most_nodes})
@@ -151,13 +151,13 @@ TEST(PolynomialChaos, moments_of_a_cube_are_exact_from_order_three_on) {
     EXPECT_NEAR(mean_of(law)[0], mean, 1e-12);
     EXPECT_NEAR(covariance_of(law)(0, 0), variance, 1e-12);
   }
-  // A polynomial of the second order has no part of the variance 6 p³ of the third.
+  // A second-order polynomial misses the variance 6 p³ of the third order.
   const StageLaw coarse = made.laws("polynomial_chaos", {.order = 2}).back();
   EXPECT_NEAR(covariance_of(coarse)(0, 0), variance - 6.0 * std::pow(p, 3), 1e-12);
 }
 
-// Without noise, nothing is lost from stage to stage: two steps of a quadratic map are one of
-// fourth order, whose third moment a Gaussian does not have.
+// Without noise nothing is lost between stages: two steps of a quadratic map form one of fourth
+// order, with a third moment that a Gaussian does not have.
 TEST(PolynomialChaos, keeps_the_shape_of_the_law_from_stage_to_stage) {
   const Gaussian belief{.mean = Eigen::VectorXd::Constant(1, 0.5),
                         .covariance = Eigen::MatrixXd::Constant(1, 1, 0.2)};
@@ -186,7 +186,7 @@ TEST(MonteCarlo, errors_fall_with_the_root_of_the_number_of_samples) {
     return sum / kSeeds;
   };
   for (const int samples : {100, 2500}) {
-    // The mean of 80 squares of about normal numbers: within five standard deviations.
+    // The mean of 80 squares of nearly normal numbers: within five standard deviations.
     EXPECT_NEAR(square_error(samples) * samples / exact.covariance.trace(), 1.0,
                 5.0 * std::sqrt(2.0 / kSeeds));
   }
@@ -200,7 +200,7 @@ TEST(MonteCarlo, has_the_same_noise_for_every_policy_and_another_for_another_see
   made.policy.inputs.setConstant(0.3);
   const Points moved =
       std::get<DiscreteMeasure>(propagator->propagate(made.problem()).back()).locations;
-  // The system is linear, and the noise frozen: all paths are displaced by the same.
+  // The system is linear and the noise frozen: all paths are displaced equally.
   const Points displaced = moved - first;
   EXPECT_GT(displaced.norm(), 0.01);
   EXPECT_LE((displaced.colwise() - Eigen::VectorXd(displaced.col(0))).norm(), 1e-12);
@@ -222,7 +222,7 @@ LawCase turning_car(double noise) {
   return made;
 }
 
-/// Mean and covariance of its last stage, in closed form.
+/// Mean and covariance at its last stage, in closed form.
 Gaussian turning_moments(const LawCase& made) {
   const DubinsProblem car{
       .belief = made.belief, .noise_covariance = made.noise, .cost = {}, .bounds = {}};
@@ -231,7 +231,7 @@ Gaussian turning_moments(const LawCase& made) {
           .covariance = moments.second - moments.mean * moments.mean.transpose()};
 }
 
-/// W2 of x and of y each to that of so many simulated paths, the larger.
+/// W2 of the marginals in x and in y to those of so many simulated paths, the larger one.
 double larger_marginal_w2(const StageLaw& law, const Points& paths) {
   const Points drawn = law_draws(law, quasi_random_draws(3, paths.cols()));
   double larger = 0.0;
@@ -255,7 +255,7 @@ TEST(GaussianMixture, comes_to_the_truth_as_its_components_grow) {
     const Points paths =
         std::get<DiscreteMeasure>(made.laws("monte_carlo", {.samples = kPaths, .seed = 5}).back())
             .locations;
-    // W2 between n paths and their law is about σ √(2.5/n) on a line.
+    // W2 between n paths and their law is about σ √(2.5/n) in one dimension.
     const double floor =
         std::sqrt(2.5 / kPaths * exact.covariance.topLeftCorner<2, 2>().diagonal().maxCoeff());
     double distance_before = std::numeric_limits<double>::infinity();
@@ -272,7 +272,7 @@ TEST(GaussianMixture, comes_to_the_truth_as_its_components_grow) {
       covariances.push_back(covariance);
     }
     EXPECT_LT(distances[3], distances[0] / 6.0) << noise;
-    // Nine components have all of the covariance but what merging and tolerances cost.
+    // Nine components have the whole covariance except the loss by merging and tolerances.
     EXPECT_LT(covariances[1], covariances[0] / 4.0) << noise;
     EXPECT_LT(covariances[2], covariances[1] / 4.0) << noise;
     EXPECT_LT(covariances[3], 0.005) << noise;

@@ -1,4 +1,4 @@
-// Systems, policies and problems for tests of methods of prediction.
+// Systems, policies and problems for tests of prediction methods.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace qsmpc::testing {
 
-/// A problem with what it refers to.
+/// A problem with everything it refers to.
 struct LawCase {
   std::unique_ptr<const models::Dynamics> dynamics;
   controller::Gaussian belief;
@@ -30,8 +30,8 @@ struct LawCase {
   }
 };
 
-/// The inputs 0 for `horizon` stages about the belief's mean, with these gains; bounds that no
-/// input meets.
+/// Zero inputs for `horizon` stages about the belief's mean, with these gains; bounds that no input
+/// reaches.
 inline controller::Policy unbounded_policy(const models::Dynamics& dynamics,
                                            const Eigen::VectorXd& start, Eigen::Index horizon,
                                            const Eigen::MatrixXd& gain) {
@@ -79,7 +79,7 @@ inline LawCase linear_case(Eigen::Index horizon = 6) {
   return made;
 }
 
-/// The moments of the state at stages 0 … horizon of a case that is linear, by the recursion.
+/// The moments of the state at stages 0 … horizon of a linear case, by recursion.
 inline std::vector<controller::Gaussian> linear_moments(const LawCase& made) {
   const Eigen::Index dim = made.dynamics->state_dim();
   Eigen::MatrixXd by_state(dim, dim);

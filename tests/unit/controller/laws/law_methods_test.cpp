@@ -1,4 +1,4 @@
-// What every method of the table must do: a new one is tested the day it is listed.
+// Requirements on every method of the table, so that new ones are tested once listed.
 #include <cmath>
 #include <limits>
 
@@ -36,7 +36,7 @@ LawSettings quick_settings() {
 
 class EveryMethod : public ::testing::TestWithParam<std::string> {};
 
-/// Any system, under the gains of LQR about inputs in the middle of its bounds.
+/// Any system, with LQR gains about inputs in the middle of its bounds.
 LawCase system_case(const std::string& name, Eigen::Index horizon) {
   LawCase made{
       .dynamics = make_any_dynamics(name, kTimeStep), .belief = {}, .noise = {}, .policy = {}};
@@ -89,12 +89,12 @@ TEST_P(EveryMethod, agrees_with_the_exact_law_of_a_linear_system) {
     const double covariance =
         (covariance_of(laws[k]) - exact[k].covariance).norm() / exact[k].covariance.norm();
     if (GetParam() == "monte_carlo") {
-      // Four standard deviations.
+      // Four standard errors.
       EXPECT_LE(mean, 4.0 * std::sqrt(trace / kSamples));
       EXPECT_LE(covariance, 4.0 * std::sqrt(2.0 / kSamples));
     } else if (is_quantised(GetParam())) {
-      // Points are conditional means; of the covariance they lack what is within their cells, soft
-      // shares draw them together, and "noise_free" lacks all of the noise.
+      // Points are conditional means: their covariance lacks the part within their cells; soft
+      // shares also contract them, and "noise_free" lacks all of the noise.
       const bool loses = GetParam() == "noise_free" || GetParam() == "soft";
       EXPECT_LE(mean, 1e-12);
       EXPECT_LE(covariance, loses ? 1.0 : 0.15) << k;
@@ -130,7 +130,7 @@ TEST_P(EveryMethod, takes_a_known_state_and_no_noise) {
   }
 }
 
-// a⁺ = √a is not a number where a point of the law is below zero.
+// a⁺ = √a is NaN where a point of the law is negative.
 TEST_P(EveryMethod, has_lost_a_law_that_is_not_finite) {
   const LawCase made = map_case({"sqrt(a)"},
                                 {.mean = Eigen::VectorXd::Constant(1, -0.5),
@@ -171,7 +171,7 @@ TEST(QuantisedLaws, are_the_predictions_of_the_planner) {
     for (std::size_t k = 0; k < laws.size(); ++k) {
       const auto& points = std::get<DiscreteMeasure>(laws[k]);
       ASSERT_EQ(points.size(), prediction.stages[k].size()) << entry.name;
-      // The same operations; those on many points take them by blocks.
+      // The same operations, except that many points are processed in blocks.
       EXPECT_LE((points.locations - prediction.stages[k].locations).norm(), 1e-12) << entry.name;
       EXPECT_LE((points.weights - prediction.stages[k].weights).norm(), 1e-12) << entry.name;
     }

@@ -1,4 +1,5 @@
-// Laws of one stage: their moments, draws and probabilities, and the numbers these come from.
+// Laws of one stage: moments, draws and probabilities, and the numbers that these are computed
+// from.
 #include "controller/laws/stage_law.hpp"
 
 #include <cmath>
@@ -53,7 +54,7 @@ TEST(StageLaw, moments_are_those_of_its_draws) {
     EXPECT_LE((mean - mean_of(law)).norm(), 5.0 * std::sqrt(covariance.trace() / kDraws));
     const Points centred = drawn.colwise() - mean;
     const Eigen::MatrixXd sampled = centred * centred.transpose() / double{kDraws};
-    // Heavier tails than a Gaussian's are allowed for by a factor of three.
+    // A factor of three allows for tails heavier than a Gaussian's.
     EXPECT_LE((sampled - covariance).norm(), 15.0 * covariance.trace() / std::sqrt(double{kDraws}));
   }
   EXPECT_LE((mean_of(laws[0]) - mean_of(points)).norm(), kRounding);
@@ -71,7 +72,7 @@ TEST(StageLaw, probability_of_points_is_their_weight_and_of_a_gaussian_near_the_
         gaussian_law({.mean = Eigen::Vector2d(1.0 - 0.5 * margin, 0.0),
                       .covariance = (Eigen::Matrix2d() << 0.25, 0.1, 0.1, 0.3).finished()});
     const double exact = normal_cumulative(-margin);
-    // A third of the standard deviation of as many random draws.
+    // A third of the standard deviation of the same number of random draws.
     EXPECT_NEAR(unsafe_probability(law, safe_set, draws), exact,
                 std::sqrt(exact * (1.0 - exact) / static_cast<double>(draws.count())) / 3.0);
   }
@@ -92,7 +93,7 @@ TEST(StandardDraws, are_those_of_their_seed_and_standard_normal) {
   for (const StandardDraws& draws : {first, quasi_random_draws(2, kCount)}) {
     EXPECT_TRUE((draws.choices.array() > 0.0 && draws.choices.array() <= 1.0).all());
     EXPECT_NEAR(draws.choices.mean(), 0.5, 0.005);
-    // Five standard deviations of random ones.
+    // Five standard deviations of random draws.
     for (const auto& row : draws.normals.rowwise()) {
       EXPECT_NEAR(row.mean(), 0.0, 5.0 / std::sqrt(double{kCount}));
       EXPECT_NEAR(row.squaredNorm() / kCount, 1.0, 5.0 * std::sqrt(2.0 / kCount));
@@ -119,7 +120,7 @@ double normal_moment(int power) {
 TEST(NormalGrid, is_exact_up_to_twice_its_order_and_one) {
   for (const Eigen::Index dim : {1, 2, 3, 4}) {
     for (const int order : {1, 2, 3}) {
-      for (const int most : {1, 1'000'000}) {  // sparse, and the product
+      for (const int most : {1, 1'000'000}) {  // sparse grid and product grid
         const NormalGrid grid = normal_grid(dim, order, most);
         const HermiteBasis monomials(dim, 2 * order + 1);
         for (const auto& exponents : monomials.exponents().colwise()) {
@@ -135,7 +136,7 @@ TEST(NormalGrid, is_exact_up_to_twice_its_order_and_one) {
             }
             sum += value;
           }
-          // Of numbers of the size of the highest moments, 105.
+          // Relative to the highest moments, 105.
           EXPECT_NEAR(sum, expected, 1e-10) << dim << " " << order << " " << most;
         }
       }

@@ -23,8 +23,8 @@ Eigen::Matrix2d covariance_of(double first, double second, double correlation) {
   return covariance;
 }
 
-/// The same probability by quadrature over the first coordinate, of the second's conditional
-/// probability; split where that one changes fastest.
+/// The same probability by quadrature over the first coordinate of the conditional probability of
+/// the second; split where that one changes fastest.
 double quadrature(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance,
                   const Eigen::Vector2d& lower, const Eigen::Vector2d& upper) {
   const double deviation = std::sqrt(covariance(0, 0));
@@ -87,7 +87,7 @@ TEST(BivariateNormal, quadrants_have_their_known_values) {
     EXPECT_NEAR(rectangle_probability(zero, covariance, below, zero), expected, kRectangleError);
     EXPECT_NEAR(rectangle_probability(zero, covariance, zero, above), expected, kRectangleError);
     EXPECT_NEAR(rectangle_probability(zero, covariance, below, above), 1.0, kRectangleError);
-    // A half-plane through the mean, and one beside it.
+    // A half-plane through the mean, and one to the side of it.
     EXPECT_NEAR(rectangle_probability(zero, covariance, below, Eigen::Vector2d(0.0, kInfinity)),
                 0.5, kRectangleError);
     EXPECT_NEAR(rectangle_probability(zero, covariance, below, Eigen::Vector2d(kInfinity, -0.6)),
@@ -183,7 +183,7 @@ TEST(BivariateNormal, error_bound_holds_up_to_dependent_coordinates) {
           << gap;
       EXPECT_LE(error, kRectangleError + 1e-15 / std::sqrt(gap) + (gap < 1e-15 ? 4e-8 : 0.0));
     }
-    if (gap < 1e-12) continue;  // beyond, the reference's own conditional variance is lost
+    if (gap < 1e-12) continue;  // beyond, the reference loses its conditional variance
     const Eigen::Matrix2d covariance = covariance_of(0.7, 1.3, 1.0 - gap);
     const Eigen::Vector2d mean(0.3, 0.5);
     EXPECT_NEAR(rectangle_probability(mean, covariance, lower, upper),

@@ -1,4 +1,4 @@
-// Memory that is given back and used again.
+// Memory that is returned and reused.
 #include "controller/measure/compression/block_pool.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ TEST(BlockPool, blocks_are_apart_and_begin_a_cache_line) {
     std::vector<std::size_t> counts;
     for (int n = 0; n < 500; ++n) {
       if (n % 3 == 2) {
-        // What follows must not touch the others.
+        // The following must not touch the other blocks.
         pool.give_back(blocks.back());
         blocks.pop_back();
         counts.pop_back();

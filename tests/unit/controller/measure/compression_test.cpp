@@ -12,7 +12,7 @@ namespace compression_test {
 
 using namespace testing;
 
-// Sums of some hundred terms of the order of one.
+// Sums of some hundred terms of order one.
 constexpr double kRounding = 1e-12;
 
 TEST(Compression, keeps_mass_and_mean_and_accounts_for_the_lost_covariance) {
@@ -86,7 +86,7 @@ TEST(Compression, at_convergence_clusters_are_voronoi_cells_and_their_means) {
     }
     EXPECT_NEAR(compression.w2, std::sqrt(to_nearest), kRounding);
     EXPECT_LE((mean_of(compression.measure) - mean_of(measure)).norm(), kRounding);
-    EXPECT_LT(compression.w2, compress(measure, 20, 1).w2);  // one round was not enough here
+    EXPECT_LT(compression.w2, compress(measure, 20, 1).w2);  // one round was not enough for it
   }
 }
 
@@ -106,7 +106,7 @@ TEST(Compression, enough_points_keep_every_point) {
     const DiscreteMeasure measure = random_measure(generator, 2, 40);
     const Compression compression = compress(measure, count);
     EXPECT_EQ(compression.measure.size(), 40);
-    // Each point is weight · location / weight: one rounding of numbers of the order of one.
+    // Each point is weight · location / weight: one rounding of numbers of order one.
     EXPECT_LE(compression.w2, 1e-15);
   }
 }

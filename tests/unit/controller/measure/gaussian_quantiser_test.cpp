@@ -15,7 +15,7 @@ namespace gaussian_quantiser_test {
 
 using namespace testing;
 
-// Sums of up to a thousand terms of the order of one.
+// Sums of up to a thousand terms of order one.
 constexpr double kRounding = 1e-12;
 
 Gaussian random_gaussian(Generator& generator, Eigen::Index dim) {
@@ -102,7 +102,7 @@ TEST(GaussianQuantiser, levels_are_the_best_of_all_shapes) {
   }
 }
 
-/// min Σ v D(n) over all shapes, tried one by one.
+/// min Σ v D(n) over all shapes, by exhaustive search.
 double least_distortion(const Eigen::VectorXd& variances, Eigen::Index axis, int budget) {
   if (axis == variances.size()) return 0.0;
   if (axis + 1 == variances.size()) return variances[axis] * approximate_distortion(budget);
@@ -119,7 +119,8 @@ TEST(GaussianQuantiser, levels_are_the_best_for_any_spread_of_variances_and_up_t
   for (int repetition = 0; repetition < 100; ++repetition) {
     const Eigen::Index dim = 1 + repetition % 6;
     const int budget = dim <= 2 ? 3000 : dim <= 4 ? 200 : 40;
-    // Some axes a hundred or a billion times narrower than others, as of a rounded singular matrix.
+    // Some axes a hundred or a billion times narrower than others, as for a rounded singular
+    // matrix.
     Eigen::VectorXd variances =
         (random_matrix(generator, dim, 1, 4.0).array().exp() / 50.0).square().matrix();
     if (repetition % 4 == 1) variances[0] *= 1e-18;

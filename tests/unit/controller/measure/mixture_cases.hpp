@@ -1,4 +1,4 @@
-// Mixtures to cut, for the tests of MixtureSplitter.
+// Mixtures for the tests of MixtureSplitter.
 #pragma once
 
 #include <string>
@@ -39,8 +39,8 @@ inline std::vector<Eigen::MatrixXd> covariances(Generator& generator, Eigen::Ind
   return all;
 }
 
-/// Every dimension from one to six with every kind of covariance, few sources and more, few cells
-/// and more, parts that bind and parts that do not.
+/// Every dimension from one to six with every kind of covariance, few and more sources, few and
+/// more cells, and limits on the parts that bind and that do not.
 inline std::vector<MixtureCase> random_mixtures() {
   struct Size {
     int sources;

@@ -1,4 +1,4 @@
-// The mixture split against its plain version: which part of which source is in which cell.
+// The mixture split compared with its plain version: which part of which source is in which cell.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace mixture_reference_test {
 
 using namespace testing;
 
-// Weights, shares and positions are of the order of one. Moments of a cell are differences of
-// moments of the cells it was cut from, so that what rounding leaves grows with their number.
+// Weights, shares and positions are of order one. A cell's moments are differences of moments of
+// the cells it was cut from, so rounding errors accumulate with the number of cells.
 constexpr double kTolerance = 1e-9;
 constexpr double kSquareTolerance = 1e-13;  // of the mixture's second moment
 
@@ -23,7 +23,7 @@ void expect_equal(const MixtureCase& mixture) {
   const PlainMixture plain = plain_split(mixture.covariance, mixture.cells, mixture.parts,
                                          mixture.sources.locations, mixture.sources.weights);
   ASSERT_EQ(cells.cells(), static_cast<int>(plain.cells.size()));
-  // Both are roots of differences, and the fast one allows for what rounding leaves of these.
+  // Both are roots of differences, and the fast version includes an allowance for their rounding.
   EXPECT_GE(cells.w2, plain.w2 - kTolerance);
   EXPECT_NEAR(cells.w2 * cells.w2, plain.w2 * plain.w2,
               kSquareTolerance * cells.whole_covariance.trace());
@@ -69,7 +69,7 @@ TEST(MixtureReference, agrees_on_clusters_that_are_far_apart) {
   for (const double distance : {1e2, 1e4}) {
     DiscreteMeasure sources = random_measure(generator, 3, 90);
     for (int i = 0; i < 90; ++i) sources.locations(i % 3, i) += distance * (i % 4);
-    // In this test, positions are compared to 1e-9 m: no farther than doubles go.
+    // This test compares positions to 1e-9 m: no farther than the precision of doubles allows.
     expect_equal({.name = "clusters",
                   .covariance = random_spd(generator, 3, 0.1),
                   .sources = sources,

@@ -20,10 +20,10 @@ namespace mixture_split_test {
 
 using namespace testing;
 
-// Sums of some thousand terms of the order of one.
+// Sums of some thousand terms of order one.
 constexpr double kRounding = 1e-12;
 
-/// Cells, as points with weights.
+/// The cells' means as weighted points.
 DiscreteMeasure cell_means(const MixtureCase& mixture, const MixtureCells& cells) {
   StageMap map;
   cluster_map(cells, run_in_turn, map);
@@ -33,7 +33,7 @@ DiscreteMeasure cell_means(const MixtureCase& mixture, const MixtureCells& cells
   return means;
 }
 
-/// Mass by source, and the number of its parts.
+/// Mass by source, and number of its parts.
 struct SourceParts {
   std::vector<double> mass;
   std::vector<int> parts;
@@ -58,7 +58,7 @@ void expect_same_bits(const MixtureCells& one, const MixtureCells& other) {
   EXPECT_EQ(one.w2, other.w2);
 }
 
-/// What must hold of every mixture; `scale` is that of its positions.
+/// Properties of every mixture; `scale` is the scale of its positions.
 void expect_sound(const MixtureCase& mixture, double scale = 1.0) {
   SCOPED_TRACE(mixture.name);
   const MixtureCells cells = split(mixture);
@@ -78,7 +78,7 @@ void expect_sound(const MixtureCase& mixture, double scale = 1.0) {
   ASSERT_TRUE(means.locations.allFinite());
   EXPECT_NEAR(means.weights.sum(), 1.0, kRounding);
   EXPECT_LE((mean_of(means) - mean_of(mixture.sources)).norm(), kRounding * scale);
-  // What the cells' means lack of the mixture's second moment is the cost.
+  // The cost is the part of the mixture's second moment that the cells' means lack.
   const double lost = covariance_of(mixture.sources).trace() + mixture.covariance.trace() -
                       covariance_of(means).trace();
   EXPECT_NEAR(cells.w2 * cells.w2, lost, kRounding * scale * scale);
@@ -115,7 +115,7 @@ TEST(MixtureSplit, is_sound_where_sources_coincide_or_weigh_nothing) {
 }
 
 TEST(MixtureSplit, is_sound_on_grids_of_thousands) {
-  // Many small cells, of some of which differences of moments leave nothing but rounding.
+  // Many small cells; for some, differences of moments leave nothing but rounding.
   const Gaussian belief{.mean = Eigen::Vector3d::Zero(),
                         .covariance = 0.01 * Eigen::Matrix3d::Identity()};
   for (const double noise : {0.01, 1e-4}) {
@@ -140,7 +140,7 @@ TEST(MixtureSplit, one_point_without_noise_stays_one_cell) {
 }
 
 TEST(MixtureSplit, scales_as_its_input_does) {
-  // By powers of two, so that nothing is rounded differently: the same cells, bit for bit.
+  // Scaled by powers of two, so rounding is unaffected: the same cells, bit for bit.
   Generator generator(824);
   const MixtureCase mixture{.name = "unit",
                             .covariance = random_spd(generator, 2, 0.3),
@@ -161,7 +161,7 @@ TEST(MixtureSplit, scales_as_its_input_does) {
 }
 
 TEST(MixtureSplit, cost_is_no_less_than_the_distance_from_the_mixture) {
-  constexpr int kGrid = 41;  // points a dimension of a grid that stands for a Gaussian
+  constexpr int kGrid = 41;  // points per dimension of a grid that stands for a Gaussian
   Generator generator(825);
   for (const int cells : {1, 8, 40}) {
     const MixtureCase mixture{.name = "plane",
@@ -174,9 +174,9 @@ TEST(MixtureSplit, cost_is_no_less_than_the_distance_from_the_mixture) {
     const DiscreteMeasure fine = product_measure(mixture.sources, noise.measure);
     const MixtureCells result = split(mixture);
     const double distance = wasserstein2(fine, cell_means(mixture, result));
-    // W2 is a metric: the mixture is within noise.w2 of its stand-in.
+    // W2 is a metric: the mixture is within noise.w2 of its substitute.
     EXPECT_GE(result.w2 + noise.w2, distance);
-    // It says something, too.
+    // It is also tight.
     EXPECT_LE(result.w2, 1.3 * (distance + noise.w2)) << cells << " cells";
   }
 }

@@ -1,5 +1,5 @@
-// The nearest of many points, by a tree of halved boxes: written for tests only, so that what the
-// library says about its quantisers can be compared with plain sampling.
+// The nearest of many points, by a tree of halved boxes. For tests only: plain sampling with it
+// checks what the library reports about its quantisers.
 #pragma once
 
 #include <algorithm>
@@ -30,13 +30,13 @@ class NearestPoint {
   }
 
  private:
-  static constexpr int kLeaf = 8;  // points below which a box is not halved
+  static constexpr int kLeaf = 8;  // a box with fewer points is not halved
   struct Cut {
     int axis = 0;
     double at = 0.0;
   };
 
-  // Cuts are kept in the order of a depth-first walk; the left half's cuts follow their parent's.
+  // Cuts are stored in depth-first order; the cuts of the left half follow their parent.
   static int cuts_of(int count) {
     return count <= kLeaf ? 0 : 1 + cuts_of(count / 2) + cuts_of(count - count / 2);
   }

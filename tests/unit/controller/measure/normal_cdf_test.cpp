@@ -1,4 +1,4 @@
-// The vectors' normal distribution against the standard library, on every instruction set.
+// The vectorised normal distribution against the standard library, on every instruction set.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -92,7 +92,7 @@ TEST(NormalValues, are_within_the_stated_error_of_the_standard_library) {
 }
 
 TEST(NormalValues, probability_does_not_fall_and_stays_within_zero_and_one) {
-  // But for rounding: an edge that is passed twice must not make a part's mass negative.
+  // Up to rounding: an edge that is passed twice must not make a part's mass negative.
   const std::vector<double> all = arguments();
   const Values values = values_of(all);
   for (std::size_t i = 0; i < all.size(); ++i) {

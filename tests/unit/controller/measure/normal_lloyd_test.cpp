@@ -42,9 +42,9 @@ TEST(NormalLloyd, keeps_mass_mean_and_covariance) {
 }
 
 TEST(NormalLloyd, is_nearly_as_good_as_the_best_known) {
-  // Known: W2 after long runs of Lloyd's method on samples. What is left here are the cells' steps
-  // along borders and Lloyd's last rounds. In two and three dimensions that is 1.5 %, in six, where
-  // a grid has few levels on an axis, 5 %.
+  // Known values: W2 after long runs of Lloyd's method on samples. The remaining difference is due
+  // to the steps of the cells' borders and to Lloyd's last rounds: 1.5 % in two and three
+  // dimensions, 5 % in six, where a grid has few levels per axis.
   for (const auto& [dim, count, known, excess] :
        {std::tuple{2, 100, 0.1969, 0.015}, std::tuple{3, 100, 0.4799, 0.015},
         std::tuple{6, 100, 1.3167, 0.05}}) {
@@ -80,7 +80,7 @@ TEST(NormalLloyd, refuses_what_it_has_no_grid_for) {
 }
 
 TEST(SpreadQuantiser, is_better_than_the_grid_for_a_hundred_points_in_three_dimensions) {
-  // The grid's 5 x 5 x 4 points have 0.526654. What is gained is 8 %.
+  // The grid's 5 x 5 x 4 points have 0.526654. The gain is 8 %.
   EXPECT_LE(quantise(standard_normal(3), 100, QuantiserKind::kLloyd).w2, 0.93 * 0.526654);
 }
 
@@ -94,7 +94,7 @@ TEST(SpreadQuantiser, keeps_the_moments_and_never_costs_more_than_the_product) {
     const GaussianQuantisation product = quantise(gaussian, budget);
     const GaussianQuantisation spread = quantise(gaussian, budget, QuantiserKind::kLloyd);
     EXPECT_LE(spread.measure.size(), budget);
-    EXPECT_LE(spread.w2, product.w2 + 1e-12);  // the same product, if it is that
+    EXPECT_LE(spread.w2, product.w2 + 1e-12);  // equal, up to rounding, if it is the product
     EXPECT_NEAR(spread.measure.weights.sum(), 1.0, kRounding);
     EXPECT_LE((mean_of(spread.measure) - gaussian.mean).norm(), kRounding);
     EXPECT_LE(
@@ -105,7 +105,7 @@ TEST(SpreadQuantiser, keeps_the_moments_and_never_costs_more_than_the_product) {
 }
 
 TEST(SpreadQuantiser, axes_with_little_variance_keep_their_grid) {
-  // Two wide axes to be spread; one level on the third is all that it deserves.
+  // Two wide axes to spread the points over; the third deserves only one level.
   const Gaussian flat{.mean = Eigen::Vector3d::Zero(),
                       .covariance = Eigen::Vector3d(1.0, 1e-6, 1.0).asDiagonal()};
   const GaussianQuantisation spread = quantise(flat, 60, QuantiserKind::kLloyd);

@@ -16,7 +16,7 @@ struct KnownDistortion {
   double w2_squared;
 };
 
-// Computed by an independent implementation in higher precision.
+// Computed by an independent high-precision implementation.
 constexpr KnownDistortion kKnown[] = {
     {1, 1.0},
     {2, 0.363380227632419},
@@ -130,7 +130,7 @@ TEST(NormalQuantiser, lost_variance_is_the_distortion) {
 TEST(NormalQuantiser, approximate_distortion_is_exact_up_to_its_limit_and_close_beyond) {
   EXPECT_DOUBLE_EQ(approximate_distortion(kExactDistortions),
                    normal_quantiser(kExactDistortions).distortion);
-  // Next term of the asymptotic expansion: a relative 1/n.
+  // The next term of the asymptotic expansion is of relative order 1/n.
   EXPECT_NEAR(approximate_distortion(1000), 2.7150262418950572e-06, 0.02 * 2.7150262418950572e-06);
 }
 
@@ -140,7 +140,7 @@ TEST(NormalQuantiser, no_points_are_refused) {
 }
 
 TEST(NormalDistribution, tails_keep_their_relative_accuracy) {
-  // Φ(−10) and Φ(−11) from tables; both lie far below the spacing of doubles near one.
+  // Φ(−10) and Φ(−11) from tables; both are far below the spacing of doubles near one.
   EXPECT_NEAR(normal_cumulative(-10.0) / 7.619853024160527e-24, 1.0, 1e-12);
   EXPECT_NEAR(normal_probability(10.0, kInfinity) / 7.619853024160527e-24, 1.0, 1e-12);
   EXPECT_NEAR(normal_probability(-kInfinity, kInfinity), 1.0, 0.0);

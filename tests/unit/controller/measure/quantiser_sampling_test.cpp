@@ -1,4 +1,4 @@
-// What the quantisers say about their distance to the Gaussian, against plain sampling.
+// The quantisers' reported distances to the Gaussian, compared with plain sampling.
 #include <array>
 #include <cmath>
 
@@ -20,7 +20,7 @@ struct Estimate {
   double deviation;
 };
 
-/// `points` are in the coordinates in which the Gaussian is root · N(0, I).
+/// `points` are in the coordinates where the Gaussian is root · N(0, I).
 Estimate sample_distance(const Points& points, const Eigen::MatrixXd& root, int samples,
                          Generator& generator) {
   const NearestPoint nearest(points);
@@ -51,7 +51,8 @@ struct Case {
   int budget;
 };
 
-/// A correlated covariance in 2 to `most_dimensions`, and a budget, uniform in its logarithm.
+/// A correlated covariance in 2 to `most_dimensions` dimensions, and a budget uniform in its
+/// logarithm.
 Case random_case(Generator& generator, int most_dimensions, double most_points) {
   const int dim = std::uniform_int_distribution<int>(2, most_dimensions)(generator);
   const double points = std::exp(uniform(generator, std::log(10.0), std::log(most_points)));

@@ -1,5 +1,5 @@
-// Horizons of the Dubins car and the bicycle from random points, between walls and obstacles, that
-// fast code is compared on.
+// Horizons of the Dubins car and the bicycle from random points, between walls and obstacles, on
+// which fast code is compared with plain code.
 #pragma once
 
 #include <limits>
@@ -23,7 +23,7 @@ struct ReferenceCase {
   bool noise = true;
   controller::PenaltyShape shape = controller::PenaltyShape::kSmooth;
   int points = 100;      ///< at the start
-  int compressed = 100;  ///< afterwards
+  int compressed = 100;  ///< at later stages
 };
 
 inline std::string name_of(const ReferenceCase& options) {
@@ -85,7 +85,7 @@ class ReferenceProblem {
   [[nodiscard]] controller::Prediction predict() const {
     return qsmpc::controller::predict(*dynamics_, *propagator_, start_, policy_);
   }
-  /// Particles of stage 0 with an input at a bound.
+  /// Number of particles at stage 0 with an input at a bound.
   [[nodiscard]] int saturated() const {
     int count = 0;
     for (Eigen::Index i = 0; i < start_.size(); ++i) {
@@ -100,7 +100,7 @@ class ReferenceProblem {
   static constexpr int kParts = 20;
   static constexpr int kHorizon = 4;
 
-  /// Walls and obstacles about the path, which goes `reach` a stage.
+  /// Walls and obstacles around the path, which advances by `reach` per stage.
   void make_room(const Eigen::VectorXd& mean, double reach) {
     const Eigen::Index dim = mean.size();
     constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -125,7 +125,7 @@ class ReferenceProblem {
     const Eigen::Index inputs = dynamics_->input_dim();
     policy_.inputs = random_matrix(generator, inputs, kHorizon, 0.2);
     policy_.states = controller::nominal_states(*dynamics_, mean, policy_.inputs);
-    // Closed loop: near enough for some particles to be clamped.
+    // Closed loop: tight enough to clamp some particles.
     const double bound = options_.closed_loop ? 0.3 : 2.0;
     policy_.bounds = {.lower = Eigen::VectorXd::Constant(inputs, -bound),
                       .upper = Eigen::VectorXd::Constant(inputs, 0.9 * bound)};
@@ -149,7 +149,7 @@ class ReferenceProblem {
 };
 
 /// Both systems, loops, propagators and penalties at the usual size; other sizes for some: one
-/// point, and more than one task works on.
+/// point, and more points than one task takes.
 inline std::vector<ReferenceCase> reference_cases() {
   std::vector<ReferenceCase> cases;
   for (const char* system : {"dubins", "bicycle"}) {

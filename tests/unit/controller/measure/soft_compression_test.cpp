@@ -16,7 +16,7 @@ namespace soft_compression_test {
 
 using namespace testing;
 
-// Sums of some hundred terms of the order of one.
+// Sums of some hundred terms of order one.
 constexpr double kRounding = 1e-12;
 
 /// A hundred points of N(0, 0.01 I) in the plane times eight of noise: one step of the planner.
@@ -90,7 +90,7 @@ TEST(SoftCompression, a_small_sharpness_loses_the_variance_and_a_growing_one_kee
     return kept_variance(
         measure, compress_soft(measure, {.count = 100, .sharpness = sharpness, .rounds = 300}));
   };
-  // All centres contract to the mean; three hundred rounds leave less than a thousandth.
+  // All centres contract to the mean; after three hundred rounds less than a thousandth is left.
   EXPECT_LE(kept(5.0), 1e-3);
   double before = 0.0;
   for (const double sharpness : {5.0, 20.0, 50.0, 200.0}) {
@@ -98,7 +98,7 @@ TEST(SoftCompression, a_small_sharpness_loses_the_variance_and_a_growing_one_kee
     EXPECT_GE(now, before) << sharpness;
     before = now;
   }
-  // The hard form keeps 98.7 %; what the two converge to differs by a local minimum.
+  // The hard form keeps 98.7 %; the two converge to different local minima.
   EXPECT_NEAR(before,
               covariance_of(compress(measure, 100, kToConvergence).measure).trace() /
                   covariance_of(measure).trace(),
@@ -112,7 +112,7 @@ TEST(SoftCompression, a_large_sharpness_is_the_hard_compression) {
     const Compression hard = compress(measure, 10, kToConvergence);
     const SoftCompression soft =
         compress_soft(measure, {.count = 10, .sharpness = 1e9, .rounds = 1000});
-    // A point would have to lie within 1e-8 of the middle of two centres to be shared.
+    // To be shared, a point would have to lie within 1e-8 of the midpoint of two centres.
     EXPECT_TRUE(soft.converged);
     EXPECT_LE((soft.measure.locations - hard.measure.locations).norm(), kRounding);
     EXPECT_LE((soft.measure.weights - hard.measure.weights).norm(), kRounding);

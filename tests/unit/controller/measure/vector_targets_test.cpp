@@ -19,7 +19,7 @@ using namespace testing;
 
 constexpr int kSizes[] = {1, 2, 3, 5, 7, 8, 9, 16, 17, 100, 101, 1023};
 
-/// Holds what `answer` gives on every target against what it gives on the best.
+/// Compares `answer` on every target with its result on the best one.
 template <class Answer>
 void expect_same_on_every_target(const Answer& answer, const std::string& what) {
   const auto best = answer();
@@ -52,7 +52,7 @@ TEST(VectorTargets, policies_are_equal_bit_for_bit) {
                                .closed_loop = closed_loop};
       const Points states = random_matrix(generator, 3, size);
       const Points adjoint = random_matrix(generator, 2, size);
-      // A part of the particles, too.
+      // Also for a part of the particles.
       for (const Eigen::Index begin : {0, size / 3}) {
         const ParticleRange range{begin, size};
         expect_same_on_every_target(

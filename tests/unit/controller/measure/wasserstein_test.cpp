@@ -19,7 +19,7 @@ namespace wasserstein_test {
 
 using namespace testing;
 
-// Sums of some hundred squares of the order of ten, and a root where W2 is of the order of one.
+// Sums of some hundred squares of order ten, and a root where W2 is of order one.
 constexpr double kRounding = 1e-12;
 
 DiscreteMeasure uniform_measure(Generator& generator, Eigen::Index dim, Eigen::Index size) {
@@ -50,7 +50,7 @@ std::vector<Eigen::Index> sorted_indices(const DiscreteMeasure& measure) {
   return order;
 }
 
-/// On the line the plan that moves quantiles to quantiles is optimal.
+/// On the line, the plan that maps quantiles to quantiles is optimal.
 double quantile_coupling(const DiscreteMeasure& first, const DiscreteMeasure& second) {
   const auto rows = sorted_indices(first);
   const auto columns = sorted_indices(second);
@@ -119,7 +119,7 @@ TEST(Wasserstein, points_without_weight_and_split_points_change_nothing) {
   same.locations << measure.locations, measure.locations, Eigen::Vector2d(1e3, -1e3);
   same.weights << 0.25 * measure.weights, 0.75 * measure.weights, 0.0;
   EXPECT_NEAR(wasserstein2(same, other), wasserstein2(measure, other), kRounding);
-  // Splitting a weight loses its last bit; a mass of 1e-16 over a distance of 4 is worth 4e-8.
+  // Splitting a weight loses its last bit; a mass of 1e-16 over a distance of 4 contributes 4e-8.
   EXPECT_NEAR(wasserstein2(same, measure), 0.0, 1e-7);
 }
 
@@ -206,7 +206,7 @@ TEST(Wasserstein, of_quantised_gaussians_is_within_their_errors_of_the_gaussians
   const double exact = wasserstein2(first, second);
   EXPECT_LE(discrete, exact + coarse.w2 + fine.w2);
   EXPECT_GE(discrete, exact - coarse.w2 - fine.w2);
-  EXPECT_NEAR(discrete, exact, 0.05);  // errors of 0.15 and 0.05, not in one direction
+  EXPECT_NEAR(discrete, exact, 0.05);  // errors of 0.15 and 0.05, in different directions
 }
 
 TEST(Wasserstein, refuses_what_is_no_measure_or_of_another_dimension) {

@@ -1,4 +1,4 @@
-// Targets whose heading is meant modulo 2π, by themselves and in plans.
+// Targets with a heading modulo 2π, by themselves and in plans.
 #include "controller/planning/cost/angular_target.hpp"
 
 #include <cmath>
@@ -40,7 +40,7 @@ TEST(AngularTarget, nothing_changes_without_angles_or_within_half_a_turn) {
   EXPECT_EQ(target_offset(target, {kHeading}, near), near - target);
 }
 
-/// A car that cares where it is heading.
+/// A car whose cost includes the heading.
 PlannerSettings heading_settings(std::vector<int> angles) {
   PlannerSettings settings = dubins_settings();
   settings.cost.state = Eigen::Vector3d(4.0, 4.0, 3.0).asDiagonal();
@@ -50,8 +50,8 @@ PlannerSettings heading_settings(std::vector<int> angles) {
   return settings;
 }
 
-/// The last of some plans along the path from the origin at this heading; those after the first
-/// are warm starts.
+/// The last of several plans along the path from the origin at this heading; all but the first are
+/// warm starts.
 struct Drive {
   double cost = 0.0;
   Eigen::MatrixXd inputs;
@@ -75,7 +75,7 @@ void expect_the_same_after_whole_turns(const PlannerSettings& settings, int plan
   const Drive plain = drive(settings, 0.1, plans);
   for (const double turns : {-1.0, 1.0, 3.0}) {
     const Drive turned = drive(settings, 0.1 + turns * kTurn, plans);
-    // Rounding of the headings, about 1e-14, through some iterations of a smooth problem.
+    // Rounding of the headings, about 1e-14, amplified by several iterations of a smooth problem.
     EXPECT_NEAR(turned.cost, plain.cost, 1e-11 * plain.cost);
     EXPECT_LE((turned.inputs - plain.inputs).cwiseAbs().maxCoeff(), 1e-9);
   }
@@ -95,7 +95,7 @@ TEST(AngularTarget, searches_for_valleys_do_not_depend_on_it_either) {
   block.lower.head<2>() << 0.0, -1.5;
   block.upper.head<2>() << 2.0, -0.55;
   settings.safe_set.obstacles.push_back(block);
-  // One plan: others would be warm starts, which search for nothing.
+  // One plan only: later ones would be warm starts, which do not search.
   expect_the_same_after_whole_turns(settings, 1);
 }
 

@@ -1,5 +1,4 @@
-// Every term of the cost and every constraint of a stage: gradients, ranges and what they refuse to
-// say.
+// Every cost term and every stage constraint: gradients, ranges and non-finite values.
 #include "controller/planning/cost/cost_terms.hpp"
 
 #include <cmath>
@@ -21,7 +20,7 @@ constexpr Eigen::Index kHorizon = 4;
 constexpr Eigen::Index kSize = 21;
 constexpr double kStep = 1e-6;
 
-/// A disc ahead of the position, and one that is off to a side.
+/// A disc ahead of the position, and one off to a side.
 Body two_discs() {
   return {.discs = {{.radius = 0.1, .offset = {0.3, 0.0}}, {.radius = 0.2, .offset = {-0.1, 0.15}}},
           .x = 0,
@@ -53,8 +52,8 @@ struct Problem {
   }
 };
 
-/// check(entry, term, random particles of the term's dimension) for every term of either shape, of
-/// a point and of a body.
+/// check(entry, term, random particles of the term's dimension) for every term of either kind, for
+/// a point and for a body.
 template <class Check>
 void for_every_term(const Check& check) {
   Generator generator(31);
@@ -131,7 +130,7 @@ TEST(CostTerms, ranges_add_up_and_leave_the_others_alone) {
   });
 }
 
-// At the particles that are kept it need not: the terms where the step leads to have said so.
+// Terms at the kept particles need not: the terms at the stepped ones have already shown it.
 TEST(CostTerms, what_is_not_a_number_shows) {
   for_every_term([](StageTerm& term, const DiscreteMeasure& particles) {
     EXPECT_TRUE(std::isfinite(term.fixed()));

@@ -1,5 +1,4 @@
-// The effort of feedback where the risk is limited: chosen by what is certified, unless it is
-// given.
+// The effort of feedback under a limited risk: chosen by the certified value unless it is given.
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -15,7 +14,8 @@ namespace effort_choice_test {
 
 using namespace testing;
 
-/// A block in the way of a car whose cost hardly minds steering: gains of that cost are stiff.
+/// A block in the path of a car whose cost barely penalises steering: the gains of that cost are
+/// stiff.
 PlannerSettings stiff(double plan, std::optional<double> effort) {
   PlannerSettings settings = block_settings();
   settings.penalty.box = 0.0;
@@ -48,7 +48,7 @@ TEST(EffortChoice, is_gentler_where_stiff_gains_cannot_be_certified) {
   EXPECT_LT(norm_of_gains(free), 0.5 * norm_of_gains(bound));
 }
 
-/// Inputs and gains of the first stages of a drive without noise of `periods` periods.
+/// Inputs and gains of the first stages during a noise-free drive of `periods` periods.
 std::vector<Eigen::MatrixXd> drive(Planner& planner, int periods) {
   std::vector<Eigen::MatrixXd> driven;
   Gaussian belief = near_start();
@@ -61,7 +61,7 @@ std::vector<Eigen::MatrixXd> drive(Planner& planner, int periods) {
   return driven;
 }
 
-// Campaigns drive one episode after the other with the same planner.
+// Campaigns drive one episode after another with the same planner.
 TEST(EffortChoice, begins_anew_after_a_reset_whatever_was_driven_before) {
   const auto car = dubins_car();
   Planner fresh(*car, stiff(0.02, std::nullopt));

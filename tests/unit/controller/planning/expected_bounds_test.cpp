@@ -34,7 +34,7 @@ double unsmoothed(const ExpectedBounds& bounds, const Eigen::VectorXd& deviation
   return expected(bounds, ExpectedBounds::Law{.noise_deviation = deviations}, measure, gradient);
 }
 
-/// Σ weights_i E h(x_i + n) by the trapezoidal rule over ±9 standard deviations, one axis a time.
+/// Σ weights_i E h(x_i + n) by the trapezoidal rule over ±9 standard deviations, axis by axis.
 double by_quadrature(const SafeSet& safe_set, const Penalty& penalty,
                      const Eigen::VectorXd& deviations, const DiscreteMeasure& measure) {
   constexpr int kNodes = 4000;
@@ -67,7 +67,7 @@ TEST(ExpectedBounds, agree_with_quadrature) {
     Points gradient;
     const double value = unsmoothed(bounds, deviations, measure, gradient);
     const double reference = by_quadrature(room(), penalty, deviations, measure);
-    // The integrand's second derivative jumps, so that the rule's error is of second order.
+    // The integrand's second derivative jumps, so the rule's error is of second order.
     EXPECT_NEAR(value, reference, 1e-5 * reference + 1e-9) << scale;
   }
 }
@@ -127,7 +127,7 @@ TEST(ExpectedBounds, far_away_nothing_is_lost_or_made_up) {
   EXPECT_TRUE(std::isnan(unsmoothed(bounds, deviations, one, gradient)));
 }
 
-/// The particles drawn to their mean, and the deviations of what they stand for, from the
+/// The particles contracted to their mean, and the deviations of the laws they stand for, by
 /// definition.
 DiscreteMeasure smoothed(const DiscreteMeasure& measure, const ExpectedBounds::Law& law,
                          Eigen::VectorXd& deviations) {

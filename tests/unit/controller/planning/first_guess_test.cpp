@@ -12,7 +12,7 @@ namespace first_guess_test {
 
 using namespace testing;
 
-/// The comparison that a planner makes, by itself.
+/// The planner's comparison of first guesses, in isolation.
 class Guesses {
  public:
   Guesses(const models::Dynamics& dynamics, const PlannerSettings& settings)
@@ -67,8 +67,7 @@ TEST(FirstGuess, compares_the_shifted_plan_with_the_cheapest_constant) {
   EXPECT_FALSE(Guesses(broken, settings).compare(belief, &previous));
 }
 
-// A target beside a wall: what a careful plan costs without noise is more than what a careless
-// constant does.
+// A target beside a wall: without noise, a careful plan costs more than a careless constant input.
 TEST(FirstGuess, a_plan_that_is_careful_because_of_the_noise_is_gone_on_with) {
   const auto car = dubins_car();
   PlannerSettings settings = block_settings();

@@ -1,4 +1,4 @@
-// The cheapest way round obstacles, and what plans aim at on it.
+// The cheapest path around obstacles, and the plans' targets on it.
 #include "controller/planning/guide/guide.hpp"
 
 #include <cmath>
@@ -18,7 +18,7 @@
 namespace qsmpc::controller {
 namespace guide_test {
 
-// What fast marching of first order, and ways along the nodes of a grid, are off by.
+// Error of first-order fast marching and of paths along grid nodes.
 constexpr double kFieldTolerance = 0.06;
 
 PlaneGrid ten_metres() {
@@ -107,7 +107,7 @@ TEST(Guide, aims_at_the_target_where_it_is_in_sight) {
 TEST(Guide, aims_beside_what_hides_the_target) {
   const auto dynamics = car();
   Guide guide(*dynamics, pocket());
-  // Two full turns on, which mean the same.
+  // Two full turns further, with the same meaning.
   const double turns = 4.0 * std::numbers::pi;
   const Aim& aim = guide.aim(Eigen::Vector3d(1.0, 5.2, turns));
   EXPECT_GT(std::abs(aim.state[1] - 5.0), 1.9);
@@ -120,7 +120,7 @@ TEST(Guide, aims_beside_what_hides_the_target) {
 TEST(Guide, passes_a_gap_only_where_the_noise_leaves_room_for_it) {
   const auto dynamics = car();
   PlannerSettings settings = pocket();
-  // A wall with a gap of 1 m in the straight way, and an open end above.
+  // A wall with a 1 m gap on the straight line, and an open end above.
   settings.safe_set.obstacles = {box(4.0, 4.5, 0.0, 4.5), box(4.0, 4.5, 5.5, 8.0)};
   settings.risk.plan = 0.02;
   Guide calm(*dynamics, settings);
@@ -129,7 +129,7 @@ TEST(Guide, passes_a_gap_only_where_the_noise_leaves_room_for_it) {
   Guide rough(*dynamics, settings);
   EXPECT_GT(lateral_deviation(*dynamics, settings), 0.15);
   EXPECT_GT(rough.aim(Eigen::Vector3d(1.0, 5.0, 0.0)).way, 9.5);
-  // A body that is wider than the gap has to go round, too.
+  // A body wider than the gap must go around as well.
   settings.noise_covariance = 1e-4 * Eigen::Matrix3d::Identity();
   settings.safe_set.body.discs = {{.radius = 0.55, .offset = Eigen::Vector2d::Zero()}};
   Guide wide(*dynamics, settings);
@@ -143,7 +143,7 @@ TEST(Guide, needs_a_plane_with_finite_bounds) {
   EXPECT_THROW(Guide(*dynamics, settings), std::invalid_argument);
 }
 
-/// How near a noise-free drive of 200 periods comes to the target.
+/// How close a noise-free drive of 200 periods comes to the target.
 double nearest_approach(const models::Dynamics& dynamics, const PlannerSettings& settings) {
   Planner planner(dynamics, settings);
   Gaussian belief{.mean = Eigen::Vector3d(1.0, 5.0, 0.0),

@@ -1,5 +1,5 @@
-// The gradient of the expected cost, against differences at frozen assignments, and its value,
-// against the closed form.
+// The expected cost's gradient, compared with differences at frozen assignments, and its value,
+// compared with the closed form.
 #include "controller/planning/cost/horizon_cost.hpp"
 
 #include <algorithm>
@@ -16,11 +16,12 @@ namespace horizon_cost_test {
 
 using namespace testing;
 
-// Central differences with h = 1e-6: rounding is ε·cost/h ≈ 2e-10 of the cost, truncation h² less.
+// Central differences with h = 1e-6: rounding is ε·cost/h ≈ 2e-10 of the cost, truncation smaller,
+// h².
 constexpr double kDifferenceStep = 1e-6;
 constexpr double kRelativeTolerance = 1e-6;
-// An input moves by at most a few h, also through x̄: no clamp switches on or off in a difference
-// if no particle's unclamped input is this near to a bound.
+// An input moves by at most a few h, including through x̄: no clamp switches within a difference if
+// no particle's unclamped input is this close to a bound.
 constexpr double kClampMargin = 1e-4;
 
 struct Case {
@@ -28,7 +29,7 @@ struct Case {
   bool closed_loop;
   bool tight_bounds;  // so tight that most particles saturate
   std::string propagator;
-  bool moving_target = false;  // another one at each stage
+  bool moving_target = false;  // differs between stages
 };
 
 class GradientCase {
@@ -83,7 +84,7 @@ class GradientCase {
             policy_};
   }
 
-  /// Distance of the nearest unclamped input to a bound, and how many are beyond one.
+  /// Distance of the nearest unclamped input to a bound, and the number of inputs beyond one.
   struct Clamps {
     double nearest = 1e300;
     int saturated = 0;
@@ -197,7 +198,7 @@ TEST(HorizonCost, of_each_stage_is_about_its_own_target) {
   HorizonCost still = problem.cost();
   const double before = still.evaluate(problem.inputs(), gradient);
   const CostParts parts = still.parts();
-  problem.move_target(3);  // the last one counts in the terminal cost alone
+  problem.move_target(3);  // the last one only enters the terminal cost
   HorizonCost moved = problem.cost();
   EXPECT_NE(moved.evaluate(problem.inputs(), gradient), before);
   EXPECT_EQ(moved.parts()[cost_part("state")], parts[cost_part("state")]);
@@ -230,7 +231,7 @@ Gaussian exact_moments(const Gaussian& belief, const Eigen::VectorXd& inputs,
     const Eigen::Vector2d mean = shrink * Eigen::Vector2d(std::cos(means[k]), std::sin(means[k]));
     law.mean.head<2>() += kReach * mean;
     for (int j = 0; j < stages; ++j) {
-      // cos a cos b = ½ (cos(a − b) + cos(a + b)) and so on; Cov(φ_j, φ_k) is the lesser variance.
+      // cos a cos b = ½ (cos(a − b) + cos(a + b)) and so on; Cov(φ_j, φ_k) is the smaller variance.
       const double covariance = std::min(variances[j], variances[k]);
       const double half = 0.5 * (variances[j] + variances[k]);
       const double with = std::exp(-half + covariance);
@@ -261,8 +262,8 @@ struct PointCounts {
   int compressed;
 };
 
-/// Six open-loop stages from the usual belief. The cost does not depend on the heading, so that the
-/// position's mean and covariance are all that enters.
+/// Six open-loop stages from the usual belief. The cost does not depend on the heading, so only the
+/// position's mean and covariance enter.
 Comparison compare_open_loop(const Eigen::Vector3d& target, const PointCounts& points) {
   constexpr int kHorizon = 6;
   const auto car = dubins_car();
@@ -308,14 +309,14 @@ Comparison compare_open_loop(const Eigen::Vector3d& target, const PointCounts& p
 TEST(HorizonCost, open_loop_value_is_near_the_closed_form) {
   const Comparison comparison = compare_open_loop(Eigen::Vector3d(5.0, 5.0, 0.0),
                                                   {.state = 1000, .noise = 200, .compressed = 500});
-  // What the quantisers lose of the variance is a small part of the cost of being far away.
+  // The variance lost by the quantisers is a small part of the cost of being far away.
   EXPECT_NEAR(comparison.predicted.total(), comparison.exact, 0.005 * comparison.exact);
   EXPECT_NEAR(comparison.predicted.of("input"), 6 * 0.1 * 0.3 * 0.3, 1e-12);  // rounding
   EXPECT_EQ(comparison.predicted.of("box") + comparison.predicted.of("obstacle"), 0.0);
 }
 
 TEST(HorizonCost, shortfall_of_the_variance_shrinks_with_more_points) {
-  // At the target the cost is all variance, of which quantisers and compression lose a part.
+  // At the target the cost is all variance, part of which quantisers and compression lose.
   const Eigen::Vector3d target(0.5, 0.05, 0.0);
   const Comparison coarse = compare_open_loop(target, {.state = 50, .noise = 30, .compressed = 50});
   const Comparison fine =
@@ -326,7 +327,7 @@ TEST(HorizonCost, shortfall_of_the_variance_shrinks_with_more_points) {
 }
 
 TEST(HorizonCost, one_step_from_a_belief_is_exact_but_for_the_belief_quantiser) {
-  // Horizon 1, cost of the terminal state alone: the noise enters exactly, through tr(PΣ).
+  // Horizon 1, terminal state cost only: the noise enters exactly, through tr(PΣ).
   const auto car = dubins_car();
   Gaussian known = dubins_belief();
   known.covariance.setZero();

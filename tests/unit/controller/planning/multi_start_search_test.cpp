@@ -35,7 +35,7 @@ class Valleys : public ::testing::Test {
 
   [[nodiscard]] double height_at_block(const Eigen::MatrixXd& inputs) const {
     const Eigen::MatrixXd path = nominal_states(*car_, Eigen::Vector3d::Zero(), inputs);
-    return path(1, 6);  // 0.9 m on the way
+    return path(1, 6);  // 0.9 m along the path
   }
 
   std::unique_ptr<const models::Dynamics> car_;
@@ -51,7 +51,7 @@ TEST_F(Valleys, both_ways_round_a_block_are_found) {
                         .covariance = 1e-3 * Eigen::Matrix3d::Identity()};
   const auto& valleys = searched(belief, Clock::time_point::max());
   ASSERT_GE(valleys.size(), 2U);
-  EXPECT_LT(height_at_block(*valleys[0]), -0.2);  // the shorter way first
+  EXPECT_LT(height_at_block(*valleys[0]), -0.2);  // the shorter path first
   double highest = -1.0;
   for (const Eigen::MatrixXd* const inputs : valleys) {
     EXPECT_TRUE((inputs->array() >= settings_.bounds.lower[0]).all());
@@ -90,7 +90,7 @@ TEST(PlannerValleys, a_cold_start_takes_the_deeper_of_two) {
   Planner planner(*car, settings);
   const double below = planner.plan(belief).cost.total();
   EXPECT_LT(planner.plan(belief).policy.states(1, 6), -0.2);
-  // The mirror image is as deep, on the other side.
+  // The mirror image is an equally good minimum on the other side.
   Box& block = std::get<Box>(settings.safe_set.obstacles[0].form);
   std::swap(block.lower[1], block.upper[1]);
   block.lower[1] *= -1.0;

@@ -1,4 +1,4 @@
-// Derivatives of single particles, and of the cost by a change of all gains, against differences.
+// Derivatives of single particles, and of the cost by a common gain change, against differences.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -13,10 +13,10 @@ namespace particle_gradient_test {
 
 using namespace testing;
 
-// Central differences: truncation h² of the third derivatives, rounding ε/h of the values.
+// Central differences: truncation h² times third derivatives, rounding ε/h times values.
 constexpr double kStep = 1e-6;
 constexpr double kTolerance = 1e-6;
-// Inputs nearer to a bound than this may be clamped on one side of a difference only.
+// Inputs closer to a bound than this may be clamped on one side of a difference only.
 constexpr double kClampMargin = 1e-4;
 
 struct Setting {
@@ -97,7 +97,7 @@ class Held {
   int saturated_ = 0;
 };
 
-/// That of coordinate `axis` of one particle.
+/// The slope of coordinate `axis` of one particle.
 StageSlope slope_of(const Held& held, Eigen::Index particle, Eigen::Index axis) {
   StageSlope slope{.particles = {particle},
                    .by_particle = Eigen::MatrixXd::Zero(held.policy().states.rows(), 1)};

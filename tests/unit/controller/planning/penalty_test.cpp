@@ -41,14 +41,15 @@ Eigen::VectorXd gradient_at(const Eigen::VectorXd& point, const Penalty& penalty
   return adjoint.col(0);
 }
 
-/// Whether the gradient is the same, nearly, a little to every side: no kink is near.
+/// Whether the gradient is nearly the same slightly to every side, so that no kink is near.
 bool smooth_near(const Eigen::VectorXd& point, const Penalty& penalty) {
   const Eigen::VectorXd here = gradient_at(point, penalty);
   for (Eigen::Index axis = 0; axis < point.size(); ++axis) {
     for (const double side : {-kKinkMargin, kKinkMargin}) {
       Eigen::VectorXd beside = point;
       beside[axis] += side;
-      // A smooth change over the margin is below weight/ℓ² · margin; a kink jumps by weight/ℓ.
+      // Over the margin a smooth gradient changes by less than weight/ℓ² · margin; a kink by
+      // weight/ℓ.
       if ((gradient_at(beside, penalty) - here).norm() > 1.0) return false;
     }
   }

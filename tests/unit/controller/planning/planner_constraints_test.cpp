@@ -13,9 +13,9 @@ namespace planner_constraints_test {
 
 using namespace testing;
 
-constexpr double kKept = 1e-6;  // m; up to here the planner counts a bound as kept
+constexpr double kKept = 1e-6;  // m; tolerance within which the planner counts a bound as kept
 
-/// How far a particle of the stages after the first is beyond the bounds at most.
+/// The largest violation of the bounds by a particle of the stages after the first.
 double worst_of(const Plan& plan, const SafeSet& room) {
   double worst = 0.0;
   for (std::size_t k = 1; k < plan.prediction.stages.size(); ++k) {
@@ -26,7 +26,7 @@ double worst_of(const Plan& plan, const SafeSet& room) {
   return worst;
 }
 
-/// The target is beyond a wall that runs beside the car's path, `distance` (m) to its left.
+/// The target is behind a wall parallel to the car's path, `distance` (m) to its left.
 PlannerSettings wall_settings(double distance, const std::string& propagator) {
   PlannerSettings settings = dubins_settings();
   settings.solver = "slsqp";
@@ -45,7 +45,7 @@ Gaussian narrow_belief() {
 TEST(PlannerConstraints, every_particle_is_kept_off_a_wall_near_the_path) {
   const auto car = dubins_car();
   for (const char* propagator : {"noise_free", "mixture"}) {
-    // Without noise the particles do not get as far.
+    // Without noise the particles do not spread as far.
     const bool noisy = propagator == std::string("mixture");
     const std::vector<double> distances = noisy ? std::vector{0.25, 0.35} : std::vector{0.2, 0.25};
     for (const bool closed_loop : {false, true}) {
@@ -54,7 +54,7 @@ TEST(PlannerConstraints, every_particle_is_kept_off_a_wall_near_the_path) {
                      std::to_string(distance));
         PlannerSettings settings = wall_settings(distance, propagator);
         settings.closed_loop = closed_loop;
-        // Without the constraint the particles cross.
+        // Without the constraint the particles cross the wall.
         settings.solver = "lbfgs";
         settings.penalty.box = 0.0;
         Planner free(*car, settings);

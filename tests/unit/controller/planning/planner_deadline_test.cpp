@@ -10,10 +10,10 @@ namespace planner_deadline_test {
 
 using namespace testing;
 
-constexpr double kNoTime = 1e-9;     // s; over before anything can begin
+constexpr double kNoTime = 1e-9;     // s; elapses before anything can begin
 constexpr double kAllTime = 3600.0;  // s
 
-/// What a plan must be, however little time there was for it.
+/// Requirements on a plan, however little time there was for it.
 void expect_usable(const Plan& plan, const PlannerSettings& settings) {
   EXPECT_TRUE(std::isfinite(plan.cost.total()));
   EXPECT_TRUE(plan.policy.inputs.allFinite());
@@ -41,7 +41,7 @@ TEST(PlannerDeadline, a_plan_without_time_is_predicted_priced_and_marked) {
       EXPECT_LE(plan.evaluations, 1);
       EXPECT_EQ(plan.warm, step > 0);
       expect_usable(plan, settings);
-      // The cost is that of this policy and belief: a planner that has time agrees.
+      // The cost belongs to this policy and belief: a planner with time agrees.
       settings.deadline = kAllTime;
       Planner other(*car, settings);
       EXPECT_EQ(plan.cost.total(), other.prescribe(belief, plan.policy.inputs).cost.total());

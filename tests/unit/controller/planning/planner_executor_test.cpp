@@ -1,4 +1,4 @@
-// No plan depends on how its loops are run.
+// No plan depends on how its loops are executed.
 
 #include <cstddef>
 #include <limits>
@@ -53,7 +53,7 @@ TEST(PlannerExecutor, plans_are_equal_bit_for_bit_however_tasks_are_run) {
   }
 }
 
-// An executor that throws is how a user's interrupt reaches a plan.
+// A throwing executor is how a user's interrupt reaches a plan.
 TEST(PlannerExecutor, is_asked_in_every_evaluation_of_few_particles_and_may_end_the_plan) {
   const auto car = dubins_car();
   PlannerSettings settings = dubins_settings();

@@ -1,4 +1,4 @@
-// The Dubins car in a room, with settings that tests change as they need, and a car that breaks.
+// The Dubins car in a room, with settings that tests change as needed, and a car that breaks.
 #pragma once
 
 #include <cmath>
@@ -39,7 +39,7 @@ inline controller::Gaussian dubins_belief() {
   return {.mean = Eigen::Vector3d::Zero(), .covariance = 0.01 * Eigen::Matrix3d::Identity()};
 }
 
-/// A block before the car, nearly in the middle of its way: below is a little shorter.
+/// A block ahead of the car, slightly off centre: passing below is a little shorter.
 inline controller::PlannerSettings block_settings() {
   controller::PlannerSettings settings = dubins_settings();
   settings.horizon = 12;
@@ -52,7 +52,7 @@ inline controller::PlannerSettings block_settings() {
   return settings;
 }
 
-/// The Dubins car, of which no Lipschitz constant is known, and which gives NaN when `broken`.
+/// The Dubins car without a known Lipschitz constant; returns NaN when `broken`.
 class FragileCar final : public models::Dynamics {
  public:
   bool broken = false;

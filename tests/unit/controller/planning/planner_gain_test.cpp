@@ -1,4 +1,4 @@
-// Gains that are given, and gains that are optimised with the inputs.
+// Given gains, and gains optimised together with the inputs.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@ namespace planner_gain_test {
 
 using namespace testing;
 
-// Both stop within this of the bottom of their valley, relatively: the solver's tolerance is 1e-6
-// an iteration, and a round of new assignments is worth 1e-5.
+// Both stop within this relative distance of their local minimum: the solver's tolerance is 1e-6
+// per iteration, and a round of new assignments is worth 1e-5.
 constexpr double kSettled = 1e-4;
 
 PlannerSettings room_settings(double penalty) {
@@ -40,7 +40,7 @@ TEST(PlannerGain, optimised_gains_cost_no_more) {
       EXPECT_LE(plan.cost.total(), (1.0 + kSettled) * plain.cost.total()) << penalty << target;
       EXPECT_TRUE(plain.gain_change.isZero(0.0));
       changed += plan.gain_change.isZero(0.0) ? 0 : 1;
-      // What is said to be changed is.
+      // The reported change of the gains is the actual one.
       const Eigen::MatrixXd about = plan.policy.gains[0];
       settings.optimise_gain = false;
       Planner again(*car, settings);
@@ -75,7 +75,7 @@ TEST(PlannerGain, warm_starts_keep_the_gain_that_was_found) {
     const Plan& plan = planner.plan(belief);
     EXPECT_EQ(plan.warm, step > 0);
     Planner cold(*car, settings);
-    // A valley away from the cold start's may be a little worse, as elsewhere.
+    // A local minimum other than the cold start's may be slightly worse, as elsewhere.
     EXPECT_LE(plan.cost.total(), 1.02 * cold.plan(belief).cost.total()) << step;
     belief.mean = plan.policy.states.col(1);
   }

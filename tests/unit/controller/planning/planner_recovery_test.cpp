@@ -1,4 +1,4 @@
-// What becomes of a planner whose model gives no numbers for a belief.
+// Recovery of a planner whose model gives non-finite values for a belief.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -53,7 +53,7 @@ void expect_same_plan(const Plan& one, const Plan& other) {
   EXPECT_EQ(one.prediction.stages.back().locations, other.prediction.stages.back().locations);
 }
 
-/// Plans, meets `bad`, and plans again.
+/// Plans, encounters `bad`, and plans again.
 void expect_cold_start_after(const models::Dynamics& car, const PlannerSettings& settings,
                              const Gaussian& good, const Gaussian& bad) {
   Planner planner(car, settings);
@@ -68,7 +68,7 @@ void expect_cold_start_after(const models::Dynamics& car, const PlannerSettings&
   EXPECT_TRUE(std::isfinite(again.cost.total()));
   Planner fresh(car, settings);
   expect_same_plan(again, fresh.plan(moved));
-  // And from there on.
+  // And for later plans as well.
   Gaussian next = moved;
   next.mean = again.policy.states.col(1);
   const Plan& warm = planner.plan(next);
@@ -120,7 +120,7 @@ TEST(PlannerRecovery, a_bicycle_at_its_pole_is_no_exception) {
     Planner planner(*car, settings);
     Gaussian belief = bicycle_belief();
     (void)planner.plan(belief);
-    // mv + S = 0, see bicycle.hpp: mass, and stiffnesses by the period.
+    // mv + S = 0, see bicycle.hpp: mass, and stiffnesses times the period.
     belief.mean[3] = -0.1 * (128916.0 + 85944.0) / 1412.0;
     Eigen::MatrixXd inputs;
     EXPECT_NO_THROW(inputs = planner.plan(belief).policy.inputs) << propagator;

@@ -17,7 +17,8 @@ namespace planner_reference_test {
 
 using namespace testing;
 
-// Relative to the values' scale: rounding of some ten thousand operations, grown along the horizon.
+// Relative to the values' scale: rounding of some ten thousand operations, amplified along the
+// horizon.
 constexpr double kTolerance = 1e-9;
 
 double scale_of(const Eigen::Ref<const Eigen::MatrixXd>& values) {
@@ -58,7 +59,7 @@ TEST_P(Reference, prediction_cost_and_gradient_agree) {
 
   HorizonCost cost(problem.terms(), fast, policy);
   Generator generator(77);
-  // At the policy itself and beside it, where the maps are held.
+  // At the policy itself and close to it, with the maps held fixed.
   for (const double step : {0.0, 0.05}) {
     const Eigen::MatrixXd inputs =
         policy.inputs + random_matrix(generator, policy.inputs.rows(), policy.horizon(), step);
@@ -96,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(cases, Reference, ::testing::ValuesIn(reference_cases()
                          [](const auto& information) { return name_of(information.param); });
 
 TEST(ReferenceCases, meet_walls_obstacles_and_input_bounds) {
-  // Or else the comparisons above would be of zeros.
+  // Otherwise the comparisons above would compare zeros.
   for (const ReferenceCase& options : reference_cases()) {
     if (options.points < 100) continue;
     const ReferenceProblem problem(options);

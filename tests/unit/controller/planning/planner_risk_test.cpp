@@ -1,4 +1,4 @@
-// Plans within limits of their certified risk, by every solver and kind of policy, and what is done
+// Plans within limits of their certified risk, by every solver and kind of policy, and the fallback
 // where there is none.
 #include <cmath>
 #include <string>
@@ -17,7 +17,7 @@ namespace planner_risk_test {
 
 using namespace testing;
 
-/// A block in the way, of which only the limits know.
+/// A block in the way, known only to the limits.
 PlannerSettings limited(double plan) {
   PlannerSettings settings = block_settings();
   settings.penalty.box = 0.0;
@@ -26,7 +26,7 @@ PlannerSettings limited(double plan) {
   settings.feedback_effort = 10.0;
   settings.max_evaluations = 300;
   settings.risk.plan = plan;
-  // Far enough off to turn away from.
+  // Far enough away to be avoided.
   settings.safe_set.obstacles = {
       Box{.lower = Eigen::Vector3d(1.2, -0.3, -1e9), .upper = Eigen::Vector3d(1.5, 0.35, 1e9)}};
   settings.safe_set.body = {.discs = {{.radius = 0.08, .offset = {0.1, 0.0}}, {.radius = 0.08}},
@@ -41,7 +41,7 @@ Gaussian near_start() {
           .covariance = Eigen::Vector3d(1e-3, 1e-3, 1e-4).asDiagonal()};
 }
 
-/// All bounds, not only those of the planner.
+/// By all bounds, not only those of the planner.
 double certified(const Planner& planner, const Gaussian& belief, const Plan& plan) {
   const PredictedMotion motion = motion_of(planner, belief, plan);
   return horizon_bound(certify(motion, planner.settings().safe_set, error_budget(motion)));
@@ -62,7 +62,7 @@ TEST(PlannerRisk, limits_are_kept_and_used_by_every_solver_and_policy) {
       EXPECT_NE(plan.status, SolverStatus::kRiskExceeded);
       EXPECT_LE(certified(planner, near_start(), plan), 0.05);
       EXPECT_LE(certified(planner, near_start(), plan), plan.risk.plan + 1e-12);
-      // More caution than was asked for would cost.
+      // Unnecessary caution would cost.
       EXPECT_GT(plan.risk.plan, 0.02);
       const double cost = plan.cost.total();
       PlannerSettings careless = settings;
@@ -76,7 +76,7 @@ TEST(PlannerRisk, limits_are_kept_and_used_by_every_solver_and_policy) {
   }
 }
 
-/// What no plan is certified with.
+/// An error with which no plan can be certified.
 ModelError hopeless_error() { return model_error_of_size(Eigen::Vector3d(0.3, 0.3, 0.1)); }
 
 TEST(PlannerRisk, the_model_alone_is_planned_for_where_its_error_leaves_no_plan) {
@@ -95,7 +95,7 @@ TEST(PlannerRisk, the_model_alone_is_planned_for_where_its_error_leaves_no_plan)
     const Plan& expected = errorless.plan(belief, {.period = period});
     EXPECT_EQ(plan.policy.inputs, expected.policy.inputs);
     EXPECT_EQ(plan.policy.gains, expected.policy.gains);
-    // What is certified is of the plant, and what is driven does not keep it.
+    // The certificate is for the plant, and the plan driven does not meet the limit.
     EXPECT_TRUE(expected.risk.kept);
     EXPECT_FALSE(plan.risk.kept);
     EXPECT_GT(plan.risk.plan, expected.risk.plan);
@@ -165,7 +165,7 @@ TEST(PlannerRisk, warm_plans_keep_limits_along_a_drive) {
     EXPECT_EQ(plan.warm, k > 0) << k;
     belief.mean = plan.policy.states.col(1);
   }
-  // It is past the block by now, and was never in it.
+  // By now it is past the block, and was never in it.
   EXPECT_GT(belief.mean[0], 1.5);
 }
 
@@ -186,7 +186,7 @@ TEST(PlannerRisk, a_model_error_is_certified_with) {
   EXPECT_LE(horizon_bound(certify(motion, settings.safe_set, error_budget(motion))), 0.05);
 }
 
-/// A wall across the way with a gap that is narrower than the body.
+/// A wall across the path with a gap narrower than the body.
 PlannerSettings closed_gap(double plan) {
   PlannerSettings settings = limited(plan);
   settings.safe_set.bounds.lower.head<2>() << -0.3, -0.6;
@@ -221,7 +221,7 @@ TEST(PlannerRisk, odd_limits_and_starts_are_answered) {
     EXPECT_EQ(plan.status, SolverStatus::kRiskExceeded);
     EXPECT_TRUE(std::isfinite(plan.cost.total()));
   }
-  // A limit of 1 is none.
+  // A limit of 1 means no limit.
   PlannerSettings free = limited(kInfinity);
   Planner without(*car, free);
   free.risk.plan = 1.0;
@@ -261,7 +261,7 @@ PlannerSettings before_a_wall(RiskOtherwise otherwise) {
   settings.safe_set.bounds.upper[0] = 1.0;
   settings.bounds = {.lower = Eigen::VectorXd::Constant(1, -3.0),
                      .upper = Eigen::VectorXd::Constant(1, 3.0)};
-  settings.risk.plan = 0.0;  // which nothing keeps
+  settings.risk.plan = 0.0;  // no plan meets it
   settings.otherwise = otherwise;
   return settings;
 }
@@ -292,7 +292,7 @@ TEST(PlannerRisk, the_previous_plan_goes_on_where_that_is_wanted) {
   next.mean = planner.plan(near_start()).policy.states.col(1);
   planner.reset();
   ASSERT_TRUE(planner.plan(near_start()).risk.kept);
-  // What follows can't be kept.
+  // The following plan cannot meet its limit.
   const Plan& plan = planner.plan(next, {.limits = {.plan = 0.0}});
   EXPECT_EQ(plan.status, SolverStatus::kRiskExceeded);
   EXPECT_EQ(plan.policy.inputs.leftCols(settings.horizon - 1),

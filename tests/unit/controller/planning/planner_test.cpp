@@ -28,7 +28,7 @@ TEST(Planner, plan_is_consistent_with_itself) {
     EXPECT_LE(plan.evaluations, settings.max_evaluations);
     EXPECT_FALSE(plan.fallback);
     EXPECT_EQ(plan.policy.gains[0].isZero(0.0), !closed_loop);
-    // The last input turns the heading alone, which costs nothing here.
+    // The last input only turns the heading, which costs nothing here.
     EXPECT_TRUE(plan.policy.gains[4].isZero(0.0));
     for (const DiscreteMeasure& stage : plan.prediction.stages) {
       EXPECT_NO_THROW(check_measure(stage));
@@ -94,7 +94,7 @@ TEST(Planner, planning_again_from_the_same_belief_is_not_worse) {
   Planner planner(*car, dubins_settings());
   const double first = planner.plan(dubins_belief()).cost.total();
   const double second = planner.plan(dubins_belief()).cost.total();
-  // Both end in the one valley of a free plane; rounds stop at a relative change of 1e-4.
+  // Both end in the single minimum of a free plane; rounds stop at a relative change of 1e-4.
   EXPECT_LE(second, first * (1.0 + 2e-4));
 }
 
@@ -108,7 +108,8 @@ TEST(Planner, warm_start_lets_a_starved_solver_improve_from_plan_to_plan) {
   for (int step = 0; step < 6; ++step) {
     const Plan& plan = starved.plan(belief);
     Planner cold(*car, settings);
-    // The start is only the better guess on the belief's points: 1 % for the noise it leaves out.
+    // The start is the better guess on the belief's points only: 1 % for the noise that it leaves
+    // out.
     EXPECT_LE(plan.cost.total(), 1.01 * cold.plan(belief).cost.total()) << step;
     belief.mean = plan.policy.states.col(1);
   }

@@ -1,5 +1,5 @@
-// The planner itself against plain predictions and costs: what it says of its plan, and that
-// nothing plainer is better.
+// The planner compared with plain predictions and costs: its own figures of its plan, and that no
+// simpler plan is better.
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -29,7 +29,7 @@ class PlannerTruth : public ::testing::TestWithParam<Case> {
     settings_.max_evaluations = 1000;
   }
 
-  /// Of the policy of `plan` with other inputs and the gains as they are, predicted and added up
+  /// The cost of the policy of `plan` with other inputs and the same gains, predicted and summed
   /// plainly.
   [[nodiscard]] PlainCost plain_cost_of(const Plan& plan, const Eigen::MatrixXd& inputs) const {
     Policy policy = plan.policy;
@@ -98,14 +98,15 @@ TEST_P(PlannerTruth, nothing_on_a_grid_is_better) {
       for (int n = kStretches * k / settings_.horizon; n > 0; --n) digit /= kLevels;
       inputs(0, k) = -2.0 + 4.0 / (kLevels - 1) * (digit % kLevels);
     }
-    // With the gains that belong to them.
+    // With the gains that these inputs imply.
     const double cost =
         plain_cost_of(other.prescribe(dubins_belief(), inputs), inputs).parts.total();
     best = std::min(best, cost);
     worst = std::max(worst, cost);
   }
   EXPECT_GT(worst, 1.05 * plan.cost.total()) << "or else the inputs do not matter";
-  // That gains follow inputs is in no slope: they are taken anew between the rounds of a search.
+  // No slope accounts for gains following the inputs: they are recomputed between the rounds of a
+  // search.
   const double left = settings_.closed_loop ? 0.005 : 0.0;
   EXPECT_GE(best, (1.0 - left) * plan.cost.total());
 }

@@ -1,4 +1,4 @@
-// The number of points that a planner needs, held against what its plans cost on simulated paths.
+// The number of points that a planner needs, judged by the costs of its plans on simulated paths.
 #include "controller/planning/points_choice.hpp"
 
 #include <limits>
@@ -17,8 +17,8 @@ namespace points_choice_test {
 
 using namespace testing;
 
-/// A car close to a block whose heading is hardly known: a few points see little of what a turn
-/// makes of that.
+/// A car close to a block with an almost unknown heading: few points capture little of the effect
+/// of a turn.
 PlannerSettings uncertain_settings() {
   PlannerSettings settings = block_settings();
   settings.state_points = 100;
@@ -71,8 +71,8 @@ TEST(PointsChoice, plans_with_the_points_cost_what_those_with_all_of_them_do_on_
   PlannerSettings fewer = all;
   choice.apply_to(fewer);
   for (const Place& place : places) {
-    // Both meet the same noise, and are minima of the price but for what their points do not see:
-    // half a tolerance is more than 20,000 paths miss of the difference.
+    // Both meet the same noise, and minimise the price except for what their points do not resolve:
+    // half a tolerance exceeds the error of the difference over 20,000 paths.
     SampledProblem paths(*car, all, place.belief, {.paths = 20000, .seed = 5});
     const double with_all = paths.evaluate(Planner(*car, all).plan(place.belief).policy);
     const double with_fewer = paths.evaluate(Planner(*car, fewer).plan(place.belief).policy);
@@ -112,7 +112,7 @@ TEST(PointsChoice, depends_on_nothing_but_what_is_given) {
   EXPECT_EQ(one.gap, other.gap);
 }
 
-/// A puck, and a target where it starts.
+/// A puck that starts at its target.
 PlannerSettings resting_settings() {
   PlannerSettings settings;
   settings.horizon = 5;
@@ -147,7 +147,7 @@ TEST(PointsChoice, keeps_all_points_where_no_plan_can_be_compared) {
 }
 
 TEST(PointsChoice, goes_on_to_the_next_waypoint) {
-  // A way back over the first waypoint, at which a search that knew no other would end.
+  // A way back over the first waypoint, where a search that knows no other would end.
   const auto puck = models::make_dynamics("point_mass", {}, 0.1);
   PlannerSettings settings = resting_settings();
   settings.horizon = 20;

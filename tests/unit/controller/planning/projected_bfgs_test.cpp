@@ -33,7 +33,7 @@ OcpProblem quadratic(const MatrixXd& hessian, const VectorXd& centre) {
           .constraints = {}};
 }
 
-/// Largest |z − clamp(z − gradient)|: zero where the conditions of optimality in the box hold.
+/// Largest |z − clamp(z − gradient)|: zero where the optimality conditions in the box hold.
 double residual(const OcpProblem& problem, const VectorXd& z) {
   VectorXd gradient(z.size());
   problem.cost(z, gradient);
@@ -115,12 +115,12 @@ TEST(ProjectedBfgs, meets_the_conditions_of_optimality_with_many_active_bounds) 
     OcpProblem problem = quadratic(random_spd(generator, n), random_matrix(generator, n, 1, 3.0));
     problem.lower.setConstant(-1.0);
     problem.upper.setConstant(1.0);
-    // Every entry begins at a bound.
+    // Every entry starts at a bound.
     const VectorXd start = random_matrix(generator, n, 1).cwiseSign();
     const auto solver = projected_bfgs();
     const SolverResult& result =
         solver->minimise(problem, start, {.max_evaluations = 500, .relative_tolerance = 1e-14});
-    // The value is exact to 1e-14, of the order of 100 here: √1e-12 remains for the slope.
+    // The value, of order 100 here, is exact to 1e-14: this leaves √1e-12 for the slope.
     EXPECT_LE(residual(problem, result.z), 1e-5) << repetition;
   }
 }
@@ -139,7 +139,7 @@ TEST(ProjectedBfgs, the_cost_never_rises_from_one_limit_to_the_next) {
 
 TEST(ProjectedBfgs, one_small_step_is_not_taken_for_the_minimum) {
   // A wall whose slope is ten thousand times that of the floor behind it: curvature learnt at the
-  // wall makes steps on the floor tiny at first.
+  // wall makes the first steps on the floor tiny.
   OcpProblem problem = quadratic(MatrixXd::Identity(2, 2), VectorXd::Zero(2));
   problem.cost = [](const VectorXd& z, VectorXd& gradient) {
     const double into = std::max(z[0] - 1.0, 0.0);
@@ -154,7 +154,7 @@ TEST(ProjectedBfgs, one_small_step_is_not_taken_for_the_minimum) {
 }
 
 TEST(ProjectedBfgs, comes_to_rest_at_a_kink) {
-  // |z_0 − 0.3| + ½ (z_1 − 0.2)²: nowhere near the minimum does the gradient vanish.
+  // |z_0 − 0.3| + ½ (z_1 − 0.2)²: the gradient does not vanish anywhere near the minimum.
   OcpProblem problem = quadratic(MatrixXd::Identity(2, 2), VectorXd::Zero(2));
   problem.cost = [](const VectorXd& z, VectorXd& gradient) {
     gradient = VectorXd{{z[0] > 0.3 ? 1.0 : -1.0, z[1] - 0.2}};
@@ -181,7 +181,8 @@ TEST(ProjectedBfgs, what_was_learnt_saves_evaluations_until_it_is_forgotten) {
   EXPECT_EQ(solver->minimise(problem, start, options).evaluations, cold);
 }
 
-/// Curvature of stage k of `horizon`: the more, the earlier it is; a gain's stands behind them.
+/// Curvature of stages `first` … `first` + horizon − 1, growing threefold per stage; a gain's
+/// follows.
 VectorXd staged_curvature(Eigen::Index horizon, Eigen::Index inputs, int first) {
   VectorXd result(horizon * inputs + 1);
   for (Eigen::Index k = 0; k < horizon; ++k) {
@@ -201,13 +202,13 @@ TEST(ProjectedBfgs, curvature_moves_up_with_the_stages_and_stays_with_the_gains)
   const auto evaluations_after = [&](bool shifted) {
     const auto solver = projected_bfgs();
     const VectorXd before = staged_curvature(kHorizon, kInputs, 0);
-    // From enough sides for all of the curvature to be seen.
+    // From enough directions to reveal the whole curvature.
     Generator generator(4);
     for (int lesson = 0; lesson < 20; ++lesson) {
       solver->minimise(quadratic(before.asDiagonal(), VectorXd::Ones(n)),
                        random_matrix(generator, n, 1, 3.0), options);
     }
-    // One stage later. The last stage's curvature is taken to be what it was.
+    // One stage later. The last stage's curvature is assumed unchanged.
     VectorXd after = staged_curvature(kHorizon, kInputs, 1);
     after.segment((kHorizon - 1) * kInputs, kInputs) =
         before.segment((kHorizon - 1) * kInputs, kInputs);
@@ -216,7 +217,7 @@ TEST(ProjectedBfgs, curvature_moves_up_with_the_stages_and_stays_with_the_gains)
         ->minimise(quadratic(after.asDiagonal(), VectorXd::Ones(n)), VectorXd::Zero(n), options)
         .evaluations;
   };
-  // With the right curvature the first step all but reaches the minimum.
+  // With the right curvature the first step almost reaches the minimum.
   EXPECT_LE(3 * evaluations_after(true), evaluations_after(false));
 }
 
@@ -231,7 +232,7 @@ TEST(ProjectedBfgs, survives_curvature_of_another_problem) {
         solver->minimise(quadratic(hessian, centre), VectorXd::Zero(4), options);
     EXPECT_LE((result.z - centre).cwiseAbs().maxCoeff(), 1e-4) << scale;
   }
-  // Another size is a cold start.
+  // A change of size causes a cold start.
   const SolverResult& result = solver->minimise(
       quadratic(MatrixXd::Identity(3, 3), VectorXd::Ones(3)), VectorXd::Zero(3), options);
   EXPECT_LE((result.z - VectorXd::Ones(3)).cwiseAbs().maxCoeff(), 1e-5);

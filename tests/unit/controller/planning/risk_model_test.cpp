@@ -1,5 +1,5 @@
-// The smooth model of a plan's risk: what it says at the plan that it was made from, and its
-// derivatives by inputs and gains.
+// The smooth model of a plan's risk: its value at the plan it was built from, and its derivatives
+// by inputs and gains.
 #include "controller/planning/risk/risk_model.hpp"
 
 #include <algorithm>
@@ -120,7 +120,7 @@ TEST(RiskModel, says_what_was_certified_of_the_plan_that_it_holds) {
   for (Eigen::Index k = 0; k < kHorizon; ++k) {
     EXPECT_NEAR(at_plan[k], certified[k], 1e-9 + 1e-6 * certified[k]);
   }
-  // The plan goes on: what was said of a stage is said of the one before.
+  // The plan advances: a stage's factors now apply to the stage before it.
   model.shift_factors();
   const Eigen::VectorXd shifted = model.risks(z);
   EXPECT_NE(shifted[0], at_plan[0]);
@@ -143,7 +143,7 @@ TEST(RiskConstraint, is_the_logarithm_of_the_risk_over_its_limit) {
   PlanRisk risk;
   constraint.certify(dubins_belief(), policy, risk);
   ASSERT_EQ(risk.stages.size(), static_cast<std::size_t>(settings.horizon));
-  EXPECT_FALSE(risk.kept);  // it goes straight at the block
+  EXPECT_FALSE(risk.kept);  // it heads straight for the block
   EXPECT_GT(risk.severity, 0.0);
   Eigen::VectorXd z = policy.inputs.reshaped();
   z.array() += 0.3;
@@ -166,7 +166,7 @@ TEST(RiskConstraint, is_the_logarithm_of_the_risk_over_its_limit) {
     const double slope = (high - multipliers.dot(constraint.values(moved))) / (2.0 * kStep);
     EXPECT_NEAR(gradient[i], slope, 1e-5 * gradient.norm());
   }
-  // A limit of 1 is none.
+  // A limit of 1 means no limit.
   constraint.set_limits({.first = 1.0, .plan = 0.5}, 0);
   EXPECT_EQ(constraint.count(), 1);
 }
@@ -175,7 +175,7 @@ TEST(RiskConstraint, counts_once_what_stays_unsafe_where_the_sum_exceeds_the_lim
   const auto car = dubins_car();
   PlannerSettings settings = block_settings();
   settings.safe_set = unbounded_safe_set(3);
-  settings.safe_set.bounds.upper[1] = 0.5;  // beside the way
+  settings.safe_set.bounds.upper[1] = 0.5;  // beside the path
   settings.risk = {.plan = 0.1};
   RiskConstraint constraint(*car, settings);
   const Gaussian belief{.mean = Eigen::Vector3d::Zero(),
@@ -198,7 +198,7 @@ TEST(RiskConstraint, counts_once_what_stays_unsafe_where_the_sum_exceeds_the_lim
   EXPECT_LE(risk.severity, 0.0);
   EXPECT_LT(risk.plan, 0.5 * by_sum.plan);
   EXPECT_GE(risk.plan, *std::max_element(risk.stages.begin(), risk.stages.end()) - 1e-6);
-  // Neither of these is within its limits by first entries.
+  // Neither of them meets its limits by first entries.
   for (const RiskLimits& limits :
        {RiskLimits{.plan = 0.9 * risk.plan},
         RiskLimits{.stage = 0.5 * risk.stages.back(), .plan = 0.5 * by_sum.plan}}) {

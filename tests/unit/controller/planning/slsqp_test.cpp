@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// What was asked of a set of constraints.
+/// The queries made to a set of constraints.
 struct Asked {
   std::size_t gradients = 0;
   std::size_t most_at_once = 0;
@@ -79,7 +79,7 @@ TEST_F(Slsqp, projects_onto_a_polygon_of_thousands_of_sides) {
   constexpr int kSides = 5000;
   OcpProblem problem = distance_to(VectorXd{{3.0, 0.0}});
   problem.constraints = circle(kSides, asked_);
-  // Side 0 has the normal (1, 0), so that the projection is (1, 0).
+  // Side 0 has the normal (1, 0), so the projection is (1, 0).
   const SolverResult& result = solver_->minimise(problem, VectorXd{{-0.5, 0.3}}, precise_);
   EXPECT_LE((result.z - VectorXd{{1.0, 0.0}}).cwiseAbs().maxCoeff(), 1e-5);
   EXPECT_LE(result.violation, 1e-6);
@@ -88,7 +88,7 @@ TEST_F(Slsqp, projects_onto_a_polygon_of_thousands_of_sides) {
 }
 
 TEST_F(Slsqp, gradients_that_are_all_but_dependent_are_survived) {
-  // Neighbouring tangents differ by a thousandth: NLopt's subproblem then gives NaN now and then.
+  // Neighbouring tangents differ by a thousandth: NLopt's subproblem then sometimes gives NaN.
   OcpProblem problem = distance_to(VectorXd::Zero(2));
   problem.constraints = circle(5000, asked_);
   for (int repetition = 0; repetition < 100; ++repetition) {
@@ -97,7 +97,7 @@ TEST_F(Slsqp, gradients_that_are_all_but_dependent_are_survived) {
     problem.cost = distance_to(centre).cost;
     const SolverResult& result = solver_->minimise(problem, start, precise_);
     EXPECT_EQ(result.status, SolverStatus::kConverged) << repetition;
-    // The polygon's corners are within its angle of the circle's nearest point.
+    // The polygon's corners are within its angle of the nearest point of the circle.
     EXPECT_LE((result.z - centre.normalized()).norm(), 2e-3) << repetition;
   }
 }
@@ -113,8 +113,8 @@ TEST_F(Slsqp, grouped_constraints_lead_to_the_same_point) {
   EXPECT_EQ(result.status, SolverStatus::kConverged);
 }
 
-/// The conditions of Karush, Kuhn and Tucker for ½ |z − centre|² and half-planes: centre − z is a
-/// sum of active normals with multipliers ≥ 0. Returns what is left of it.
+/// The KKT conditions for ½ |z − centre|² and half-planes: centre − z is a sum of active normals
+/// with multipliers ≥ 0. Returns the norm of the remainder.
 double kkt_residual(const MatrixXd& normals, const VectorXd& offsets, const VectorXd& centre,
                     const VectorXd& z) {
   std::vector<int> active;
@@ -122,7 +122,7 @@ double kkt_residual(const MatrixXd& normals, const VectorXd& offsets, const Vect
     if (normals.col(j).dot(z) - offsets[j] > -1e-5) active.push_back(static_cast<int>(j));
   }
   if (active.empty()) return (centre - z).norm();
-  // Non-negative least squares by projected gradients: slow, plain, and not the method under test.
+  // Non-negative least squares by projected gradients: slow, simple, and not the method under test.
   const MatrixXd chosen = normals(Eigen::all, active);
   VectorXd multipliers = VectorXd::Zero(chosen.cols());
   const double step = 1.0 / (chosen.transpose() * chosen).trace();
@@ -149,7 +149,7 @@ TEST_F(Slsqp, meets_the_conditions_of_optimality_among_thousands_of_half_planes)
     const SolverResult& result = solver_->minimise(problem, VectorXd::Zero(n), precise_);
     EXPECT_LE(result.violation, 1e-6) << repetition;
     EXPECT_LE((normals.transpose() * result.z - offsets).maxCoeff(), 1e-6);
-    // The distance is exact to 1e-12, so z is to 1e-6 times the angle between normals.
+    // The distance is exact to 1e-12, so z is exact to 1e-6 times the angle between normals.
     EXPECT_LE(kkt_residual(normals, offsets, centre, result.z), 1e-3) << repetition;
     EXPECT_LE(asked_.most_at_once, 5U * n);
   }
@@ -163,7 +163,7 @@ TEST_F(Slsqp, leaves_an_infeasible_start_that_no_constraint_is_near_to) {
   EXPECT_LE(result.violation, 1e-6);
 }
 
-/// Stay out of discs: r² − |z_{2k..2k+1} − m|² ≤ 0.
+/// Stays outside discs: r² − |z_{2k..2k+1} − m|² ≤ 0.
 ConstraintSet out_of_disc(Eigen::Index pairs, const Eigen::Vector2d& centre, double radius) {
   const auto value = [=](const VectorXd& z, Eigen::Index k) {
     return radius * radius - (z.segment<2>(2 * k) - centre).squaredNorm();
@@ -188,8 +188,8 @@ ConstraintSet out_of_disc(Eigen::Index pairs, const Eigen::Vector2d& centre, dou
 }
 
 TEST_F(Slsqp, goes_round_a_disc_though_the_problem_is_not_convex) {
-  // A chain of points as short as possible from (−2, 0) to (2, 0), none of them within the unit
-  // disc about (0, −0.2): a path with its points on the circle or on tangents.
+  // The shortest chain of points from (−2, 0) to (2, 0) with none of them in the unit disc about
+  // (0, −0.2): a path with its points on the circle or on tangents.
   constexpr Eigen::Index kPoints = 15;
   const Eigen::Index n = 2 * kPoints;
   OcpProblem problem = distance_to(VectorXd::Zero(n));
@@ -222,12 +222,12 @@ TEST_F(Slsqp, goes_round_a_disc_though_the_problem_is_not_convex) {
   const double arc = kPi - 2.0 * std::acos(1.0 / reach) - 2.0 * std::asin(0.2 / reach);
   const double length = 2.0 * tangent + arc;
   const double taut = 0.5 * length * length / (kPoints + 1);
-  // Chords of 0.27 are shorter than their arcs by 0.3 %, and the arc is a fifth of the whole.
+  // Chords of 0.27 are 0.3 % shorter than their arcs, and the arc is a fifth of the whole.
   EXPECT_NEAR(result.value, taut, 0.005 * taut);
 }
 
 TEST_F(Slsqp, what_cannot_be_kept_is_called_infeasible_and_violated_least) {
-  // z_0 ≤ −1 and z_0 ≥ 1: the least of the largest violation is 1, at z_0 = 0.
+  // z_0 ≤ −1 and z_0 ≥ 1: the smallest possible maximum violation is 1, at z_0 = 0.
   MatrixXd normals(2, 2);
   normals << 1.0, -1.0,  //
       0.0, 0.0;
@@ -243,7 +243,7 @@ TEST_F(Slsqp, what_cannot_be_kept_is_called_infeasible_and_violated_least) {
 TEST_F(Slsqp, a_kept_point_is_preferred_to_a_cheaper_one_that_violates) {
   OcpProblem problem = distance_to(VectorXd{{3.0, 0.0}});
   problem.constraints = circle(100, asked_);
-  // The start is feasible, so the result is, however few evaluations there are.
+  // The start is feasible, so the result is, however few evaluations are allowed.
   for (int limit = 1; limit <= 8; ++limit) {
     const SolverResult& result =
         solver_->minimise(problem, VectorXd{{0.2, 0.3}}, {.max_evaluations = limit});
@@ -251,7 +251,7 @@ TEST_F(Slsqp, a_kept_point_is_preferred_to_a_cheaper_one_that_violates) {
     EXPECT_NE(result.status, SolverStatus::kInfeasible);
     EXPECT_LE(result.evaluations, limit);
   }
-  // From an infeasible one, a single evaluation cannot do it.
+  // From an infeasible start, a single evaluation is not enough.
   const SolverResult& result =
       solver_->minimise(problem, VectorXd{{2.0, 0.0}}, {.max_evaluations = 1});
   EXPECT_EQ(result.status, SolverStatus::kInfeasible);
@@ -270,7 +270,7 @@ TEST_F(Slsqp, equal_constraints_by_the_dozen_do_no_harm) {
 }
 
 TEST_F(Slsqp, decisions_of_unlike_units_take_no_more_evaluations) {
-  // The same problem in other units, of powers of two, so that nothing is rounded otherwise.
+  // The same problem in other units, powers of two, so rounding is unaffected.
   const VectorXd units{{1024.0, 1.0, 1.0 / 1024.0, 1.0 / 256.0}};
   const VectorXd centre{{3.0, -4.0, 5.0, -20.0}};
   const auto evaluations = [&](const VectorXd& unit) {

@@ -16,7 +16,7 @@ struct SolverChoice {
   [[nodiscard]] std::string label() const { return solver + "_" + bounding; }
 };
 
-/// Every solver, with every bounding where it can be chosen.
+/// Every solver, with every bounding method where there is a choice.
 inline std::vector<SolverChoice> solver_choices() {
   std::vector<SolverChoice> choices;
   for (const controller::SolverEntry& solver : controller::solvers()) {
@@ -32,7 +32,7 @@ inline std::vector<SolverChoice> solver_choices() {
 }
 
 /// ½ Σ_i w_i (z_i − target_i)², w = 1, 4, 1, 4, …, with −0.1 ≤ z_i ≤ 0.3 and −1 ≤ z_i ≤ 2 in turn:
-/// separable, so that the minimum over the box is the target's projection.
+/// separable, so the minimum over the box is the projection of the target.
 inline controller::OcpProblem boxed_bowl(const Eigen::VectorXd& target) {
   const Eigen::Index n = target.size();
   controller::OcpProblem problem{

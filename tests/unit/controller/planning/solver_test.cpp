@@ -34,8 +34,8 @@ TEST_P(EverySolver, finds_the_minimum_inside_the_box) {
   const VectorXd target{{0.1, 1.5, 0.0, -0.5, 0.2, 0.3}};
   const SolverResult& result = solver_->minimise(
       boxed_bowl(target), VectorXd::Zero(6), {.max_evaluations = 500, .relative_tolerance = 1e-14});
-  // The value falls quadratically about the minimum, so z is as good as √1e-14, relative to the
-  // starting cost of the order of one, times the sigmoid's condition.
+  // The value is quadratic about the minimum, so z is accurate to √1e-14, relative to the starting
+  // cost of order one, times the sigmoid's condition number.
   EXPECT_LE((result.z - target).cwiseAbs().maxCoeff(), 1e-5);
   EXPECT_NE(result.status, SolverStatus::kNumericalTrouble);
   EXPECT_LE(result.evaluations, 500);
@@ -48,8 +48,8 @@ TEST_P(EverySolver, goes_to_the_bound_where_the_minimum_lies_beyond) {
   const SolverResult& result = solver_->minimise(
       problem, VectorXd::Zero(4), {.max_evaluations = 1000, .relative_tolerance = 1e-14});
   const VectorXd expected{{0.3, 0.5, 0.1, -1.0}};
-  // A sigmoid nears its bound in the limit only: what is left costs 1e-4 of the slope there. The
-  // others reach the bound itself, and what is free is as good as √1e-14 again.
+  // A sigmoid reaches its bound only in the limit: the remainder costs 1e-4 of the slope there. The
+  // others reach the bound itself, and the free entries are accurate to √1e-14 again.
   EXPECT_LE((result.z - expected).cwiseAbs().maxCoeff(), maps_onto_the_open_box() ? 1e-3 : 1e-5);
   EXPECT_TRUE(within_bounds(problem, result.z));
 }
@@ -107,7 +107,7 @@ TEST_P(EverySolver, bounds_may_be_infinite_on_either_side_and_an_entry_may_be_fi
   const SolverResult& result =
       solver_->minimise(problem, start, {.max_evaluations = 1000, .relative_tolerance = 1e-14});
   const VectorXd expected{{3.0, 1.0, 7.0, 0.5, 0.4, 0.1}};
-  // As above, a change of variables nears its bound in the limit only.
+  // As above, a change of variables reaches its bound only in the limit.
   EXPECT_LE((result.z - expected).cwiseAbs().maxCoeff(), maps_onto_the_open_box() ? 1e-3 : 1e-5);
   EXPECT_TRUE(within_bounds(problem, result.z));
 }

@@ -1,4 +1,4 @@
-// What samples say of a model error.
+// Estimates of a model error from samples.
 #include "controller/prediction/model_error.hpp"
 
 #include <cmath>

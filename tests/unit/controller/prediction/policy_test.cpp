@@ -13,7 +13,7 @@ namespace policy_test {
 
 using namespace testing;
 
-/// x⁺ = Ax + Bu: what the linear-quadratic regulator is exact for.
+/// x⁺ = Ax + Bu, for which the linear-quadratic regulator is exact.
 class LinearSystem final : public models::Dynamics {
  public:
   LinearSystem(Eigen::MatrixXd a, Eigen::MatrixXd b) : a_(std::move(a)), b_(std::move(b)) {
@@ -90,7 +90,7 @@ TEST(LqrGains, reach_the_steady_state_of_the_riccati_equation) {
                                          .terminal = Eigen::MatrixXd::Zero(1, 1)},
                              .horizon = 60};
   const double value = 0.5 * (1.0 + std::sqrt(5.0));
-  // The recursion contracts by 0.15 a stage: after sixty stages only rounding is left.
+  // The recursion contracts by 0.15 per stage: after sixty stages only rounding is left.
   EXPECT_NEAR(scalar.gains()[0](0, 0), -value / (1.0 + value), 1e-14);
 }
 
@@ -110,7 +110,7 @@ TEST(LqrGains, no_perturbed_gain_costs_less) {
 }
 
 TEST(LqrGains, reach_the_minimum_of_the_quadratic_programme) {
-  // The stacked inputs' minimiser, by a linear solve, is what the feedback does without noise.
+  // Without noise, the feedback gives the minimiser of the stacked inputs, found by a linear solve.
   Generator generator(102);
   const LinearProblem problem = random_linear_problem(generator, 5);
   const Eigen::VectorXd start = random_matrix(generator, 4, 1);
@@ -125,7 +125,7 @@ TEST(LqrGains, reach_the_minimum_of_the_quadratic_programme) {
     }
     return sum + 0.5 * state.dot(problem.weights.terminal * state);
   };
-  // A quadratic function is known from its values: H_ij and g_i by exact second differences.
+  // A quadratic function is determined by its values: H_ij and g_i by exact second differences.
   const double at_zero = cost_of(Eigen::VectorXd::Zero(10));
   const auto unit = [](int i) { return Eigen::VectorXd(Eigen::VectorXd::Unit(10, i)); };
   Eigen::MatrixXd hessian(10, 10);
@@ -155,7 +155,7 @@ TEST(Policy, inputs_of_a_batch_equal_the_input_of_each_column) {
       policy_inputs(policy, k, states, inputs);
       for (Eigen::Index i = 0; i < states.cols(); ++i) {
         const Eigen::VectorXd single = policy_input(policy, k, states.col(i));
-        // K (x − x̄) against Kx − Kx̄, of numbers up to thirty.
+        // K (x − x̄) compared with Kx − Kx̄, for numbers up to thirty.
         EXPECT_LE((inputs.col(i) - single).norm(), 1e-14 * 30.0);
         EXPECT_TRUE((single.array() >= policy.bounds.lower.array()).all());
         EXPECT_TRUE((single.array() <= policy.bounds.upper.array()).all());

@@ -19,7 +19,7 @@ namespace propagator_test {
 
 using namespace testing;
 
-// Sums of some thousand terms of the order of one.
+// Sums of some thousand terms of order one.
 constexpr double kRounding = 1e-12;
 
 PropagatorSettings random_settings(Generator& generator, int noise_points, int compressed_points) {
@@ -28,7 +28,7 @@ PropagatorSettings random_settings(Generator& generator, int noise_points, int c
           .compressed_points = compressed_points};
 }
 
-/// All sums of a stepped point and a noise point, point by point.
+/// All sums of a stepped point and a noise point.
 DiscreteMeasure all_sums(const DiscreteMeasure& stepped, const DiscreteMeasure& noise) {
   DiscreteMeasure sums{.locations = Points(stepped.dim(), stepped.size() * noise.size()),
                        .weights = Eigen::VectorXd(stepped.size() * noise.size())};
@@ -42,7 +42,7 @@ DiscreteMeasure all_sums(const DiscreteMeasure& stepped, const DiscreteMeasure& 
   return sums;
 }
 
-/// What `map` makes of the points that it was built for.
+/// The image under `map` of the points that it was built for.
 DiscreteMeasure mapped(const StageMap& map, const DiscreteMeasure& stepped) {
   DiscreteMeasure next{.locations = Points::Constant(stepped.dim(), map.clusters(), std::nan("")),
                        .weights = map.weights};
@@ -171,7 +171,7 @@ TEST(Propagator, cost_of_a_map_is_no_less_than_the_distance_from_the_products) {
       const DiscreteMeasure sums = all_sums(stepped, noise.measure);
       const double distance = wasserstein2(sums, mapped(map, stepped));
       EXPECT_GE(map.compression_w2, distance - kRounding) << entry.name;
-      // Soft shares pay for their softness; the others say something.
+      // Soft shares lose accuracy by their softness; the others are tight.
       if (entry.name != "soft") {
         EXPECT_LE(map.compression_w2, 1.5 * distance) << entry.name;
       }
@@ -233,7 +233,7 @@ TEST(MomentMatchedPropagator, degenerate_measures_stay_finite_and_where_they_are
 
 TEST(MomentMatchedPropagator, directions_without_particles_are_left_alone) {
   Generator generator(53);
-  // Noise along one axis only, one of its points, and stepped points along the others.
+  // Noise along a single axis, from one of its points, and stepped points along the others.
   PropagatorSettings settings = random_settings(generator, 1, 8);
   settings.noise.covariance = Eigen::Vector3d(0.0, 0.0, 0.04).asDiagonal();
   DiscreteMeasure stepped = random_measure(generator, 3, 30);
@@ -242,7 +242,7 @@ TEST(MomentMatchedPropagator, directions_without_particles_are_left_alone) {
       make_propagator("moment_matched", settings)->stage_map(stepped.locations, stepped.weights);
   const DiscreteMeasure next = mapped(map, stepped);
   const Eigen::MatrixXd difference = covariance_of(next) - covariance_of(stepped);
-  EXPECT_LE(difference.cwiseAbs().maxCoeff(), kRounding);  // the other axes are restored
+  EXPECT_LE(difference.cwiseAbs().maxCoeff(), kRounding);  // the other axes regain their covariance
   EXPECT_LE((next.locations.row(2).array() - 0.7).abs().maxCoeff(), kRounding);
 }
 

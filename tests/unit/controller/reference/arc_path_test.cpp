@@ -24,7 +24,7 @@ TEST(ArcPath, through_points_of_a_circle_is_about_the_circle) {
   EXPECT_NEAR(path.length(), 2.0 * std::numbers::pi * kRadius, 1e-3);
   for (double along = 0.0; along < path.length(); along += 0.37) {
     const PathPlace place = path.at(along);
-    // The error of a cubic spline is of the order of the spacing to the fourth: 2e-5 here.
+    // The error of a cubic spline is of fourth order in the spacing: 2e-5 here.
     EXPECT_NEAR(place.position.norm(), kRadius, 2e-4);
     EXPECT_NEAR(place.curvature, 1.0 / kRadius, 2e-3);
     const Eigen::Vector2d ahead(std::cos(place.heading), std::sin(place.heading));
@@ -54,7 +54,7 @@ TEST(ArcPath, arc_lengths_are_lengths_along_it) {
     const double to = path.length() * (i + 1) / kChords;
     sum += (path.at(to).position - path.at(from).position).norm();
   }
-  // Five Gauss points a segment, whose speed is no polynomial.
+  // Five Gauss points per segment; the speed is not a polynomial.
   EXPECT_NEAR(sum, path.length(), 1e-3 * path.length());
 }
 
@@ -82,7 +82,7 @@ TEST(ArcPath, projects_to_the_nearest_place_of_the_part_that_is_searched) {
 }
 
 TEST(ArcPath, near_its_last_place_is_not_taken_to_another_stretch) {
-  // An eight: the two diagonals cross in the middle.
+  // A figure of eight: the two diagonals cross in the middle.
   Eigen::Matrix2Xd points(2, 16);
   for (int i = 0; i < 16; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / 16;

@@ -27,7 +27,8 @@ TEST(PathTarget, moves_at_its_speed_and_turns_without_a_jump) {
   const PathTarget target{.path = circle(10.0), .speed = SpeedProfile(4.0), .time_step = 0.5};
   const models::SystemDescription system = Bicycle{}.description();
   Eigen::VectorXd state = Eigen::VectorXd::Zero(6);
-  state[Bicycle::kHeading] = 0.5 * std::numbers::pi + 4.0 * std::numbers::pi;  // two turns on
+  state[Bicycle::kHeading] = 0.5 * std::numbers::pi + 4.0 * std::numbers::pi;  // two full turns
+                                                                               // more
   Eigen::MatrixXd wanted(6, 60);
   path_targets(target, system, state, 0.0, wanted);
   for (Eigen::Index k = 0; k < wanted.cols(); ++k) {
@@ -46,12 +47,12 @@ TEST(PathTarget, progress_is_counted_on_over_rounds) {
   double progress = 0.0;
   for (double truth = 0.0; truth < 3.2 * target.path->length(); truth += 0.4) {
     progress = progress_on(target, 1.05 * target.path->at(truth).position, progress);
-    EXPECT_NEAR(progress, truth, 1e-4);  // the way out is not quite across the path
+    EXPECT_NEAR(progress, truth, 1e-4);  // the offset is not exactly perpendicular to the path
   }
 }
 
 TEST(SpeedProfile, keeps_the_accelerations_along_and_across) {
-  // An ellipse: bends of 2.5 m at its ends, nearly straight sides.
+  // An ellipse: radii of 2.5 m at its ends, nearly straight sides.
   Eigen::Matrix2Xd points(2, 64);
   for (int i = 0; i < 64; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / 64;
@@ -67,7 +68,7 @@ TEST(SpeedProfile, keeps_the_accelerations_along_and_across) {
     const double next = profile.at(along + kStep);
     least = std::min(least, speed);
     EXPECT_LE(speed, limits.top + 1e-12);
-    // Between places the profile is linear, and the curvature is not.
+    // The profile is linear between the points; the curvature is not.
     EXPECT_LE(speed * speed * std::abs(path.at(along).curvature), 1.05 * limits.across);
     EXPECT_LE(std::abs(next * next - speed * speed) / (2.0 * kStep), 1.05 * limits.along);
   }

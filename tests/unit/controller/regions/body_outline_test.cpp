@@ -25,7 +25,7 @@ TEST(BodyOutline, of_discs_that_do_not_meet_is_their_circles) {
 }
 
 TEST(BodyOutline, leaves_out_what_lies_in_another_disc) {
-  // Two unit discs a unit apart: each has a third of its circle in the other.
+  // Two unit discs one unit apart: each has a third of its circle inside the other.
   const Body body{.discs = {{.radius = 1.0}, {.radius = 1.0, .offset = {1.0, 0.0}}}};
   const std::vector<Arc> arcs = body_outline(body, {0.0, 0.0}, 0.3);
   ASSERT_EQ(arcs.size(), 2U);

@@ -1,5 +1,5 @@
-// The body: clearances against a search over its points, placements and what they differentiate to,
-// and what has no room.
+// The body: clearances compared with a search over its points, placements and their derivatives,
+// and bodies without room.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,7 +18,7 @@ namespace body_test {
 
 using namespace testing;
 
-/// A room with a block, for states (x, y, heading, speed), where the speed is limited, too.
+/// A room with a block, for states (x, y, heading, speed), with a limited speed as well.
 SafeSet room(const Body& body) {
   SafeSet set = unbounded_safe_set(4);
   set.bounds.lower.head(2) << -1.0, -1.0;
@@ -46,7 +46,7 @@ Eigen::Vector4d random_state(Generator& generator) {
           uniform(generator, -4.0, 4.0), uniform(generator, -3.0, 1.0)};
 }
 
-/// The least clearance of points of the body, each alone, with the speed far from its limit.
+/// The smallest clearance of points of the body, each by itself, with the speed far from its limit.
 double searched(const Eigen::Vector4d& state, const Body& body) {
   const UnsafeSet point(room({}));
   double least = kInfinity;
@@ -76,7 +76,7 @@ TEST(Body, clearance_is_that_of_its_nearest_point) {
     state[3] = -10.0;
     const double expected = searched(state, car());
     const double found = clearance(state, unsafe);
-    // Whether it is safe is the same in any case; how deep it is is said of discs, not of points.
+    // Both agree on safety; the depth is defined by discs, not by points.
     EXPECT_EQ(found > 0.0, expected > 0.0) << state.transpose();
     if (expected <= 0.0) continue;
     ++safe;
@@ -103,7 +103,7 @@ TEST(Body, clearances_of_many_states_are_those_of_each) {
   }
 }
 
-// What an error of the state has to bridge is at least the clearance over this constant.
+// The state error needed to become unsafe is at least the clearance divided by this constant.
 TEST(Body, no_disc_moves_farther_than_the_lipschitz_constant_says) {
   Generator generator(7);
   const UnsafeSet unsafe(room(car()));

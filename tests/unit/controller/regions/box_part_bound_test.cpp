@@ -25,7 +25,7 @@ bool inside(const Box& box, const Eigen::VectorXd& point) {
   return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
 }
 
-/// What the unsafe set is made of: half-spaces and boxes.
+/// The parts of the unsafe set: half-spaces and boxes.
 std::vector<BoxPart> parts_of(const SafeSet& room) {
   std::vector<BoxPart> parts = half_spaces(room.bounds);
   for (const Obstacle& obstacle : room.obstacles) parts.push_back(box_part(*obstacle.box()));
@@ -74,11 +74,11 @@ struct Perturbed {
   Eigen::MatrixXd smoothing;
 };
 
-/// What an adversary may do who knows y and the part.
+/// Errors of an adversary who knows y and the part.
 enum class Adversary {
-  kPushesWhoIsNear,  ///< to the part's nearest point and a little beyond
-  kPushesAll,        ///< a constant way towards the part
-  kPullsBoth,        ///< at random to and fro, which only the second order shows
+  kPushesWhoIsNear,  ///< to the part's nearest point and slightly beyond
+  kPushesAll,        ///< a constant shift towards the part
+  kPullsBoth,        ///< randomly to and fro, which only shows in second order
 };
 constexpr Adversary kAdversaries[] = {Adversary::kPushesWhoIsNear, Adversary::kPushesAll,
                                       Adversary::kPullsBoth};
@@ -101,7 +101,7 @@ Eigen::VectorXd error_at(Adversary adversary, const Eigen::VectorXd& y, const Bo
   return error.cwiseSign() * size;
 }
 
-/// How often z + e is in the part, and the root mean squares of e, over the same draws.
+/// The rate at which z + e is in the part, and the root mean squares of e, over the same draws.
 struct Attack {
   double frequency = 0.0;
   Eigen::VectorXd error;
@@ -163,7 +163,8 @@ TEST(PartBounds, hold_under_adversarial_errors) {
     const PerturbedGaussian bounded{.law = law, .error = truth.error, .smoothing = state.smoothing};
     const double markov = markov_region_bound(bounded, part);
     const double smooth = smooth_region_bound(bounded, part);
-    // Five standard errors of the frequency; the errors' root mean squares are those of the draws.
+    // Five standard errors of the frequency; the errors' root mean squares are taken from the
+    // draws.
     const double allowance =
         5.0 * std::sqrt(truth.frequency * (1.0 - truth.frequency) / kSamples) + 1e-15;
     EXPECT_GE(markov, truth.frequency - allowance) << repetition;
@@ -223,8 +224,8 @@ TEST(TailBound, says_one_where_nothing_is_known_and_nearly_nothing_far_away) {
 
 TEST(SmoothBound, holds_for_an_error_along_one_axis_of_a_correlated_part) {
   // n moves along the diagonal, the part lies beside the diagonal through y, and the error is along
-  // one axis only, onto it: the probability's second derivative there is that of what n has across
-  // the diagonal, which is narrow.
+  // one axis only, onto it: the probability's second derivative in that direction is governed by
+  // the extent of n across the diagonal, which is narrow.
   const Perturbed state{.mean = Eigen::Vector2d(0.1, 0.0),
                         .rest = Eigen::Matrix2d::Zero(),
                         .smoothing = Eigen::Matrix2d{{1.0, 0.9999}, {0.9999, 1.0}}};
@@ -240,7 +241,8 @@ TEST(SmoothBound, holds_for_an_error_along_one_axis_of_a_correlated_part) {
 }
 
 TEST(SmoothBound, counts_an_error_along_one_axis_once) {
-  // The other coordinate has neither error nor smoothing, as the heading of an open-loop unicycle.
+  // The other coordinate has neither error nor smoothing, like the heading of an open-loop
+  // unicycle.
   const Gaussian law{.mean = Eigen::Vector2d::Zero(),
                      .covariance = Eigen::Vector2d(1.0, 0.04).asDiagonal()};
   const Eigen::VectorXd error = Eigen::Vector2d(0.05, 0.0);
@@ -256,13 +258,13 @@ TEST(SmoothBound, counts_an_error_along_one_axis_once) {
 }
 
 TEST(MarkovBound, is_attained_by_the_worst_error) {
-  // All of (c, 2) is moved onto the wall at 2: what E e² = ∫(2 − y)² φ dy moves most. The bound is
-  // the dual of this problem.
+  // Moves all of (c, 2) onto the wall at 2: the most that E e² = ∫(2 − y)² φ dy can move. The bound
+  // is the dual of this problem.
   const Gaussian law{.mean = Eigen::VectorXd::Zero(1), .covariance = Eigen::MatrixXd::Ones(1, 1)};
   const BoxPart wall =
       part_of(Eigen::VectorXd::Constant(1, 2.0), Eigen::VectorXd::Constant(1, kInfinity));
   for (const double c : {1.99, 1.9, 1.5, 1.0}) {
-    // Against the cumulative moments of the normal density between c and 2.
+    // Cumulative moments of the normal density between c and 2.
     const double mass = normal_probability(c, 2.0);
     const double first = normal_density(c) - normal_density(2.0);
     const double second = mass + c * normal_density(c) - 2.0 * normal_density(2.0);
@@ -296,7 +298,7 @@ TEST(PartBounds, without_error_are_the_probability) {
     const double deviation = std::sqrt(law.covariance(0, 0));
     const double behind = normal_cumulative((law.mean[0] - lower[0]) / deviation);
     EXPECT_NEAR(smooth_region_bound(exact, face), behind, 1e-15);
-    // What lies within the least reach, 1e-4, before the wall.
+    // The probability within the least reach, 1e-4, before the wall.
     EXPECT_GE(markov_region_bound(exact, face), behind);
     EXPECT_LE(markov_region_bound(exact, face), behind + 1e-4 / deviation);
   }
@@ -349,7 +351,7 @@ TEST(PartBounds, say_one_where_nothing_is_known) {
     EXPECT_EQ(smooth_region_bound({.law = broken, .error = small, .smoothing = smoothing}, part),
               1.0);
   }
-  // A coordinate that the part does not restrict may be anything.
+  // A coordinate that the part does not restrict may be arbitrary.
   const Eigen::VectorXd beside = Eigen::Vector2d(0.01, kInfinity);
   const PerturbedGaussian state{.law = law, .error = beside, .smoothing = smoothing};
   EXPECT_LT(markov_region_bound(state, face), 1e-3);
@@ -358,7 +360,7 @@ TEST(PartBounds, say_one_where_nothing_is_known) {
 
 TEST(PartBounds, known_example_has_the_known_figures) {
   // Belief N(0, 0.01 I), u = 0.3 open loop, safe set [−1, 12]², stage 8: the truth is 2.9e-4 (1e6
-  // samples); C4 was 6.6e-4 before the error was split into coordinates.
+  // samples); C4 was 6.6e-4 before the error was split by coordinate.
   const auto car = dubins_car();
   PlannerSettings settings = dubins_settings();
   settings.horizon = 8;

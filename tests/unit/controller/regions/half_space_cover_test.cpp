@@ -1,4 +1,4 @@
-// The half-spaces about regions hold all of them, and begin where they do.
+// The half-spaces around regions contain them and touch them.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -54,7 +54,7 @@ std::vector<Covered> bounded_regions() {
   };
 }
 
-/// The least of direction · x over points of the region, of many.
+/// The smallest direction · x over many points of the region.
 double least_of_region(const UnsafeRegion& region, const Eigen::VectorXd& direction,
                        Generator& generator) {
   double least = kInfinity;

@@ -1,5 +1,5 @@
-// A shape that moves, against the same shape standing where it is, and against laws to which its
-// uncertainty was added.
+// A moving shape, compared with the same shape at rest in its position, and with laws that include
+// its uncertainty.
 #include "controller/regions/planar/moving_shape.hpp"
 
 #include <cmath>
@@ -34,7 +34,7 @@ std::vector<PlanarShape> shapes() {
           HalfPlaneShape{.normal = {0.6, 0.8}, .offset = 0.2}};
 }
 
-/// A forecast of one obstacle, with `places` at kStage and far away at others.
+/// A forecast of one obstacle, with `places` at kStage and far away at the other stages.
 std::shared_ptr<const ObstacleForecast> forecast_of(const std::vector<ObstaclePlace>& places) {
   std::vector<ObstaclePlace> away = places;
   for (ObstaclePlace& place : away) place.offset.array() += 100.0;
@@ -43,8 +43,8 @@ std::shared_ptr<const ObstacleForecast> forecast_of(const std::vector<ObstaclePl
   return forecast;
 }
 
-/// A law in three dimensions, of which the first two are the plane, and what separates the state
-/// from it.
+/// A law in three dimensions, the first two of which form the plane, and the state's deviation from
+/// it.
 struct RandomLaw {
   Gaussian law;
   Eigen::VectorXd error = Eigen::VectorXd::Constant(3, 0.02);
@@ -81,7 +81,7 @@ TailSum tails(const UnsafeRegion& region, const RandomLaw& law) {
   return sum;
 }
 
-/// What planning asks of both.
+/// Compares everything that planning queries.
 void expect_same_for_planning(const UnsafeRegion& one, const UnsafeRegion& other,
                               Generator& generator) {
   constexpr int kPoints = 60;
@@ -145,7 +145,7 @@ TEST(MovingShape, at_a_certain_place_is_the_shape_standing_there) {
           std::min(1.0, standing->soft_probability(kStage, law.law.mean, law.law.covariance, 0.2)),
           1e-9);
     }
-    // Those of a disc and of a half-plane may begin elsewhere.
+    // Those of a disc and of a half-plane may start elsewhere.
     if (std::holds_alternative<DiscShape>(shape) || std::holds_alternative<HalfPlaneShape>(shape)) {
       continue;
     }
@@ -154,7 +154,7 @@ TEST(MovingShape, at_a_certain_place_is_the_shape_standing_there) {
   }
 }
 
-/// The law with the uncertainty of an obstacle added to it.
+/// The law with an obstacle's uncertainty added.
 RandomLaw relative(RandomLaw law, const Eigen::Matrix2d& covariance) {
   law.law.covariance.topLeftCorner<2, 2>() += covariance;
   law.smooth.topLeftCorner<2, 2>() += covariance;
@@ -246,7 +246,7 @@ TEST(MovingShape, softened_is_the_same_for_many_centres) {
   }
 }
 
-/// A room with one disc that moves.
+/// A room with one moving disc.
 SafeSet room_with_a_walker(std::shared_ptr<const ObstacleForecast> forecast) {
   SafeSet safe_set = unbounded_safe_set(3);
   safe_set.body = {.discs = {}, .x = 0, .y = 1, .heading = 2};
@@ -267,7 +267,7 @@ TEST(MovingShape, unsafe_set_follows_the_forecast_that_it_shares) {
                     {{.offset = {2.0, 0.0}, .covariance = 0.01 * Eigen::Matrix2d::Identity()}}});
   EXPECT_DOUBLE_EQ(clearance(state, unsafe, 0), 1.5);
   EXPECT_NEAR(clearance(state, unsafe, 1), 0.3, 1e-12);
-  EXPECT_NEAR(clearance(state, unsafe, 7), 0.3, 1e-12);  // as at the last stage that is known
+  EXPECT_NEAR(clearance(state, unsafe, 7), 0.3, 1e-12);  // as at the last known stage
   EXPECT_TRUE(unsafe.is_certain(0));
   EXPECT_FALSE(unsafe.is_certain(1));
 }

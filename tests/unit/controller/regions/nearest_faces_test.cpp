@@ -1,4 +1,4 @@
-// Signed distances with their derivatives, of every shape and of the body.
+// Signed distances and their derivatives, for every shape and for the body.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace qsmpc::controller {
 namespace nearest_faces_test {
 
-/// A room with two blocks, one of which is forbidden for some speeds only, and a long vehicle.
+/// A room with two blocks, one of them forbidden only for certain speeds, and a long vehicle.
 SafeSet room() {
   SafeSet room = unbounded_safe_set(4);  // x, y, heading, speed
   room.bounds.lower.head<2>().setConstant(-3.0);
@@ -75,7 +75,7 @@ TEST(NearestFaces, clearances_have_the_derivatives_of_differences) {
       down[a] -= 1e-6;
       slope[a] = (clearance(up, unsafe) - clearance(down, unsafe)) / 2e-6;
     }
-    // Where two faces are equally near, there is no derivative.
+    // There is no derivative where two faces are equally near.
     if ((slope - nearest.slope.col(i)).norm() > 1e-5) ++kinks;
   }
   EXPECT_LE(kinks, 2);

@@ -1,5 +1,5 @@
-// Shapes of the plane: what is refused, the parts that they are made of, and where their surfaces
-// are, against plain searches.
+// Planar shapes: refusals, the parts that they consist of, and their surfaces, compared with plain
+// searches.
 #include "controller/regions/planar/planar_shape.hpp"
 
 #include <cmath>
@@ -39,7 +39,7 @@ double area_of(const Eigen::Matrix2Xd& corners) {
   return sum;
 }
 
-/// A star of `points` points about the origin, which is nowhere straight.
+/// A star of `points` points about the origin, without straight angles.
 Eigen::Matrix2Xd star(int points, Generator& generator) {
   Eigen::Matrix2Xd corners(2, 2 * points);
   for (int i = 0; i < 2 * points; ++i) {
@@ -72,12 +72,12 @@ TEST(PlanarShape, refuses_what_is_none_and_says_what_is_expected) {
   EXPECT_THAT(polygon({{0, 0}, {1, 0}, {2, 0}}), HasSubstr("an area above 0"));
   EXPECT_THAT(polygon({{0, 0}, {1, 1}, {1, 0}, {0, 1}}), HasSubstr("from corners 0 and 2 do"));
   EXPECT_THAT(polygon({{0, 0}, {1, 0}, {1, 0}, {0, 1}}), HasSubstr("1 and 2 are the same"));
-  // It goes back along itself.
+  // It doubles back on itself.
   EXPECT_THAT(polygon({{0, 0}, {2, 0}, {1, 0}, {1, 1}}), HasSubstr("do not meet"));
   // It touches itself in a corner.
   EXPECT_THAT(polygon({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}}), HasSubstr("do not meet"));
-  EXPECT_EQ(polygon({{0, 0}, {0, 1}, {1, 0}}), "");          // either way round
-  EXPECT_EQ(polygon({{0, 0}, {1, 0}, {2, 0}, {2, 1}}), "");  // straight on in a corner
+  EXPECT_EQ(polygon({{0, 0}, {0, 1}, {1, 0}}), "");          // either orientation
+  EXPECT_EQ(polygon({{0, 0}, {1, 0}, {2, 0}, {2, 1}}), "");  // straight angle at a corner
 }
 
 TEST(PlanarShape, that_is_convex_is_one_part) {
@@ -87,7 +87,7 @@ TEST(PlanarShape, that_is_convex_is_one_part) {
   const auto parts =
       convex_parts(PolygonShape{.corners = corners_of({{0, 0}, {0, 2}, {2, 2}, {2, 1}, {2, 0}})});
   ASSERT_EQ(parts.size(), 1U);
-  EXPECT_EQ(parts[0].corners.cols(), 4);  // without the one in which it goes straight on
+  EXPECT_EQ(parts[0].corners.cols(), 4);  // without the corner with a straight angle
 }
 
 TEST(PlanarShape, that_is_not_convex_is_covered_by_few_convex_parts) {
@@ -95,7 +95,7 @@ TEST(PlanarShape, that_is_not_convex_is_covered_by_few_convex_parts) {
   for (int points = 2; points < 12; ++points) {
     const Eigen::Matrix2Xd corners = star(points, generator);
     const auto pieces = convex_pieces(corners);
-    // A star needs one for every two of its inner corners.
+    // A star needs one part for every two of its inner corners.
     EXPECT_LE(pieces.size(), 4U * static_cast<std::size_t>(points));
     double area = 0.0;
     for (const Eigen::Matrix2Xd& piece : pieces) {
@@ -128,7 +128,7 @@ TEST(PlanarShape, is_entered_where_a_plain_search_says) {
       for (int k = 0; k < 2000; ++k) {
         const Eigen::Vector2d point = random_matrix(generator, 2, 1, 1.5);
         const double clear = clearance(point, unsafe);
-        // The polygon about an ellipse reaches a little farther than it.
+        // The polygon around an ellipse extends slightly beyond it.
         const double slack = std::holds_alternative<EllipseShape>(shape) ? 1e-3 : 1e-9;
         if (clear > 1e-9) {
           EXPECT_FALSE(is_near(shape, point, radius)) << point.transpose();
@@ -177,7 +177,7 @@ TEST(PlanarSeparation, is_the_best_over_all_directions) {
     }
     const PlanarSeparation found = separation(part, mean, covariance);
     EXPECT_LE(found.z, best + 1e-4 * (1.0 + std::abs(best)));
-    // Inside, the way out that is found need not be the shortest.
+    // Inside, the separation that is found need not be the shortest way out.
     if (best > 0.0) {
       EXPECT_NEAR(found.z, best, 1e-4 * (1.0 + best));
     }

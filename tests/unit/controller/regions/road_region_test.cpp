@@ -1,5 +1,5 @@
-// What is off a road: distances, tails and bounds by the tree of walls against all walls in turn,
-// and the walls against the road itself.
+// The outside of a road: distances, tails and bounds by the tree of walls, compared with all walls
+// in turn, and the walls with the road itself.
 #include "controller/regions/planar/road_region.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace road_region_test {
 
 using namespace testing;
 
-/// A circuit of `count` points with bends to either side, of about 100 m.
+/// A circuit of `count` points with bends to both sides, about 100 m long.
 ArcPath circuit(int count) {
   Eigen::Matrix2Xd points(2, count);
   for (int i = 0; i < count; ++i) {
@@ -54,7 +54,7 @@ double width_at(const ArcPath& path, const Eigen::VectorXd& widths, double along
   return widths[0];
 }
 
-/// Correlated, of deviations of about `scale`.
+/// Correlated, with standard deviations of about `scale`.
 Eigen::MatrixXd random_covariance(Generator& generator, double scale) {
   const Eigen::MatrixXd root = random_matrix(generator, 2, 2, scale);
   return root * root.transpose() + 0.01 * scale * scale * Eigen::MatrixXd::Identity(2, 2);
@@ -64,7 +64,7 @@ TEST(RoadRegion, is_what_lies_behind_the_edges) {
   const ArcPath path = circuit(60);
   const RoadWidths widths = widths_of(path);
   const RegionPointer region = make_road(walls_of(path), {.radius = 0.0, .x = 0, .y = 1});
-  // Chords and walls for several points are off the edges by less than this.
+  // Chords, and walls that span several points, deviate from the edges by less than this.
   constexpr double kOff = 0.02;
   for (double along = 0.0; along < path.length(); along += 0.13) {
     const PathPlace place = path.at(along);
@@ -158,7 +158,8 @@ TEST(RoadRegion, bound_without_an_error_is_no_less_than_the_truth) {
       unsafe += region->signed_distance(0, mean + root * draw) <= 0.0 ? 1 : 0;
     }
     const double rate = static_cast<double>(unsafe) / kSamples;
-    const double slack = 5.0 * std::sqrt(rate / kSamples) + 1e-9;  // five deviations of the rate
+    const double slack = 5.0 * std::sqrt(rate / kSamples) + 1e-9;  // five standard errors of the
+                                                                   // rate
     EXPECT_GE(region->soft_probability(0, mean, covariance, 1e-4), rate - slack);
     const Gaussian law{.mean = mean, .covariance = covariance};
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(2);
@@ -175,7 +176,7 @@ TEST(RoadRegion, bound_without_an_error_is_no_less_than_the_truth) {
 }
 
 TEST(RoadWalls, edges_that_meet_are_told) {
-  // An eight.
+  // A figure of eight.
   Eigen::Matrix2Xd points(2, 40);
   for (int i = 0; i < 40; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / 40;
@@ -201,8 +202,7 @@ TEST(RoadWalls, a_bend_tighter_than_the_width_is_told) {
 }
 
 TEST(RoadWalls, stand_off_another_stretch_of_the_road) {
-  // A hairpin whose legs are 5 m apart, the road 2 m to either side: room for walls of half a
-  // metre.
+  // A hairpin with legs 5 m apart and 2 m of road to either side: room for walls of half a metre.
   Eigen::Matrix2Xd points(2, 26);
   for (int i = 0; i < 10; ++i) {
     points.col(i) << 2.0 * i, 0.0;

@@ -13,10 +13,10 @@ namespace qsmpc::controller {
 namespace safe_set_test {
 
 using namespace testing;
-// Differences of numbers of the order of one.
+// Differences of numbers of order one.
 constexpr double kRounding = 1e-14;
-// The grid of a search. Next to the nearest point of a set of boxes, or of their complement, lies a
-// whole cell of the grid's size that belongs to it, hence a grid point within the cell's diagonal.
+// Grid spacing of a search. Next to the nearest point of a set of boxes, or of their complement,
+// lies a whole grid cell that belongs to it, hence a grid point within the cell's diagonal.
 constexpr double kSpacing = 0.02;
 constexpr double kDiagonal = kSpacing * 1.41422;
 
@@ -41,7 +41,7 @@ bool unsafe(const Eigen::Vector2d& point, const SafeSet& safe_set) {
   return false;
 }
 
-/// Distance from `point` to the nearest point of a grid that is, or is not, unsafe.
+/// Distance from `point` to the nearest unsafe (or safe) point of a grid.
 double searched_distance(const Eigen::Vector2d& point, const SafeSet& safe_set, bool to_unsafe,
                          double spacing) {
   double least = kInfinity;

@@ -1,4 +1,4 @@
-// Every shape of the table: distances, penalties and probabilities against plain searches and
+// Every shape of the table: distances, penalties and probabilities compared with plain searches and
 // simulation.
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ using namespace testing;
 
 constexpr int kStage = 3;
 
-/// One in three dimensions; half of the coordinates are unbounded on one side or both.
+/// A three-dimensional box; half of the coordinates are unbounded on one side or both.
 Box random_intervals(Generator& generator) {
   Box box{.lower = Eigen::VectorXd(3), .upper = Eigen::VectorXd(3)};
   for (int axis = 0; axis < 3; ++axis) {
@@ -34,7 +34,7 @@ Box random_intervals(Generator& generator) {
     if (uniform(generator, 0.0, 1.0) < 0.3) box.lower[axis] = -kInfinity;
     if (uniform(generator, 0.0, 1.0) < 0.3) box.upper[axis] = kInfinity;
   }
-  // Something has to be unsafe, and something safe.
+  // There must be both unsafe and safe points.
   box.lower[0] = std::max(box.lower[0], -1.0);
   return box;
 }
@@ -43,7 +43,7 @@ Eigen::Vector2d random_place(Generator& generator) {
   return {uniform(generator, -0.6, 0.6), uniform(generator, -0.6, 0.6)};
 }
 
-/// One of each kind, of about the size of the intervals; polygons are convex.
+/// One shape of each kind, about as large as the intervals; polygons are convex.
 std::vector<std::pair<std::string, PlanarShape>> random_planar_shapes(Generator& generator) {
   PolygonShape polygon{.corners = Eigen::Matrix2Xd(2, 5)};
   const Eigen::Vector2d centre = random_place(generator);
@@ -66,7 +66,7 @@ std::vector<std::pair<std::string, PlanarShape>> random_planar_shapes(Generator&
        HalfPlaneShape{.normal = random_place(generator), .offset = uniform(generator, -0.3, 0.3)}}};
 }
 
-/// An L.
+/// An L-shaped polygon.
 PlanarShape random_corner(Generator& generator) {
   PolygonShape polygon{.corners = Eigen::Matrix2Xd(2, 6)};
   polygon.corners << 0.0, 0.8, 0.8, 0.3, 0.3, 0.0,  //
@@ -74,7 +74,7 @@ PlanarShape random_corner(Generator& generator) {
   return moved(polygon, random_place(generator));
 }
 
-/// `check` with regions of each shape, some of them grown.
+/// Calls `check` with regions of each shape, some of them grown.
 template <class Check>
 void for_every_planar_shape(const Check& check, bool convex_alone = false) {
   Generator generator(73);
@@ -123,14 +123,14 @@ TEST(Shapes, distances_of_many_points_are_those_of_each) {
     for (int i = 0; i < 40; ++i) {
       EXPECT_NEAR(least[i], region.signed_distance(kStage, points.col(i)), 1e-14);
     }
-    // What is less already stays.
+    // Smaller values stay unchanged.
     Eigen::ArrayXd low = Eigen::ArrayXd::Constant(40, -100.0);
     region.lower_to_distances(kStage, points, low);
     EXPECT_TRUE((low == -100.0).all());
   });
 }
 
-/// Whether a little about `point` there is one that is unsafe, or not, other than `safe` says.
+/// Whether a point close to `point` is on the other side of the boundary than `safe` says.
 bool has_other_side(const UnsafeRegion& region, const Eigen::Vector3d& point, bool safe) {
   constexpr double kAbout = 2e-5;
   for (int axis = 0; axis < 3; ++axis) {
@@ -145,8 +145,8 @@ bool has_other_side(const UnsafeRegion& region, const Eigen::Vector3d& point, bo
   return false;
 }
 
-// The distance is how far one can move without changing sides: a step of less never does, and where
-// one along the gradient ends, the other side is near.
+// The distance is how far one can move without changing sides: a shorter step never does, and a
+// step of that length along the gradient ends next to the other side.
 TEST(Shapes, distance_is_how_far_the_boundary_is) {
   for_every_shape(
       [](const UnsafeRegion& region, Generator& generator) {
@@ -193,7 +193,7 @@ TEST(Shapes, penalty_has_its_gradient_and_falls_with_the_distance) {
     for (int i = 0; i < 11; ++i) {
       Points unused = Points::Zero(3, 11);
       const double alone = value_of(points, unused, {i, i + 1});
-      // h is 0 from the length on; the walls may count a corner twice.
+      // h is 0 beyond the length; the walls may count a corner twice.
       if (region.signed_distance(kStage, points.col(i)) >= 0.4) far += alone;
       if (region.signed_distance(kStage, points.col(i)) <= 0.0) {
         EXPECT_GE(alone, 3.5 * weights[i] - 1e-12);
@@ -219,7 +219,7 @@ Eigen::MatrixXd random_covariance(Generator& generator, bool diagonal) {
   return Eigen::MatrixXd(covariance.diagonal().asDiagonal());
 }
 
-// E(1 − d²/t²)₊ by simulation, and both ways of asking for it.
+// E(1 − d²/t²)₊ by simulation, compared with both ways of computing it.
 TEST(Shapes, soft_probabilities_are_not_below_the_simulated) {
   constexpr int kSamples = 4000;
   for_every_shape([](const UnsafeRegion& region, Generator& generator) {
@@ -255,7 +255,7 @@ TEST(Shapes, soft_probabilities_are_not_below_the_simulated) {
   });
 }
 
-// The state is y + n + e, where e moves y as far towards the region as it may and does not know n.
+// The state is y + n + e, where e moves y towards the region as far as it may without knowing n.
 TEST(Shapes, probabilities_with_an_error_are_not_below_the_simulated) {
   constexpr int kSamples = 4000;
   static constexpr double kError = 0.05;
@@ -296,7 +296,7 @@ TEST(Shapes, probabilities_with_an_error_are_not_below_the_simulated) {
   });
 }
 
-// The tails are smooth stand-ins: at least the probability, with the derivatives that they say.
+// The tails are smooth surrogates: at least the probability, and with correct derivatives.
 TEST(Shapes, tails_hold_the_probability_and_have_their_derivatives) {
   constexpr int kSamples = 4000;
   int inside = 0;
@@ -398,7 +398,7 @@ TEST(Shapes, outlines_are_the_boundary_in_the_plane) {
   const Outline slice = make_region("box", block)->outline(kStage, 0, 2);
   EXPECT_TRUE(slice.depends_on_others);
   EXPECT_EQ(slice.corners(1, 0), -kInfinity);
-  // A direction that the system lacks.
+  // A coordinate that the system lacks.
   EXPECT_EQ(make_region("box", block)->outline(kStage, 0, -1).corners(1, 2), kInfinity);
 }
 

@@ -17,16 +17,16 @@ namespace qsmpc::controller {
 namespace smoothed_kernels_test {
 
 using namespace testing;
-// The scalar formula's own allowance for the far tails and its rounding of numbers up to one.
+// The scalar formula's own allowance for the far tails, and its rounding for numbers up to one.
 constexpr double kScalarError = 1e-15;
 
-/// What the vector loops may add to the truth at one end of an interval that is within reach.
+/// How much the vector loops may add to the truth at an end of an interval within reach.
 double slack_of_end(double wall, double deviation, double t) {
   if (std::isinf(wall) || wall - t > 8.6 * deviation || wall < -8.6 * deviation) return 0.0;
   return 2.0 * kSoftMomentError * (wall * wall + deviation * deviation) / (t * t);
 }
 
-/// Expects `value` to be a bound of E(1 − dist²/t²)₊ that is as close as promised.
+/// Expects `value` to be a bound of E(1 − dist²/t²)₊ with the documented accuracy.
 void expect_close_bound(double value, double mean, const SoftInterval& interval, double t) {
   const double scalar =
       soft_interval_probability(mean, interval.deviation, interval.lower, interval.upper, t);
@@ -40,7 +40,7 @@ void expect_close_bound(double value, double mean, const SoftInterval& interval,
   EXPECT_LE(value, 1.0);
 }
 
-/// Intervals of every kind: both ends, one, none; wide and empty; near and far.
+/// Intervals of every kind: two ends, one, none; wide and empty; near and far.
 SoftInterval random_interval(Generator& generator, int kind) {
   const double lower = uniform(generator, -3.0, 3.0) * (kind % 7 == 0 ? 100.0 : 1.0);
   const double width = kind % 5 == 0 ? 0.0 : std::pow(10.0, uniform(generator, -3.0, 1.0));
@@ -53,7 +53,7 @@ TEST(SoftKernels, bound_the_scalar_formula_for_every_reach) {
   Generator generator(171);
   for (int kind = 0; kind < 500; ++kind) {
     const SoftInterval interval = random_interval(generator, kind);
-    // Also numbers of reaches that no vector width divides.
+    // Including counts of reaches that no vector width divides.
     const std::size_t count = 1 + kind % 19;
     std::vector<double> reaches(count);
     for (double& reach : reaches) reach = std::pow(10.0, uniform(generator, -3.0, 6.0));
@@ -115,7 +115,7 @@ TEST(RectangleEstimate, is_near_the_probability) {
     Eigen::Matrix2d covariance;
     covariance << 1.0, r, r, 1.0;
     const double exact = rectangle_probability(Eigen::Vector2d::Zero(), covariance, lower, upper);
-    // What Gauss's 16 nodes over at most 12 deviations leave.
+    // Error of Gauss quadrature with 16 nodes over at most 12 deviations.
     EXPECT_NEAR(rectangle_estimate(rectangle, r), exact, 3e-2 * exact + 1e-6);
   }
 }

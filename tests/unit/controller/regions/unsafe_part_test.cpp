@@ -7,7 +7,7 @@
 namespace qsmpc::controller {
 namespace unsafe_part_test {
 
-/// An obstacle that reaches through the upper bound of y.
+/// An obstacle that extends through the upper bound of y.
 UnsafeSet room_with_a_column() {
   return SafeSet{
       .bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(4.0, 3.0)},

@@ -1,4 +1,4 @@
-// What is known of an obstacle, against simulation, and against conditioning a joint Gaussian at
+// The estimate of an obstacle, compared with simulation, and with conditioning a joint Gaussian at
 // once.
 #include "controller/surroundings/motion_filter.hpp"
 
@@ -22,7 +22,7 @@ using models::ObstacleMotion;
 
 constexpr double kTimeStep = 0.2;
 
-/// One that walks to the north-east, drifts, and comes back to its line.
+/// A walker heading north-east that drifts and returns to its line.
 ObstacleMotion walker() {
   return {.ways = {models::steady_way({0.6, 0.8})},
           .start_deviation = {0.2, 0.1},
@@ -93,7 +93,7 @@ Eigen::MatrixXd deviations_by_normals(const ObstacleMotion& motion, int directio
   return map;
 }
 
-/// What is seen in the first periods: some offsets near the way.
+/// Observations of the first periods: some offsets near the way.
 std::vector<Eigen::Vector2d> seen_offsets(const IntendedWay& way, int count) {
   std::mt19937_64 generator(8);
   std::normal_distribution<double> normal(0.0, 0.15);
@@ -105,8 +105,8 @@ std::vector<Eigen::Vector2d> seen_offsets(const IntendedWay& way, int count) {
   return seen;
 }
 
-/// The law of the deviation at `stage` periods after the last that was seen, and the logarithm of
-/// the density of what was seen, but for a constant.
+/// The law of the deviation `stage` periods after the last observation, and the log-density of the
+/// observations up to a constant.
 struct Conditioned {
   double mean;
   double variance;
@@ -184,7 +184,7 @@ TEST(MotionFilter, ways_become_as_probable_as_bayes_says) {
   const std::vector<double> probabilities = filter.probabilities();
   EXPECT_NEAR(probabilities[0], 1.0 / (1.0 + ratio), 1e-9);
   EXPECT_NEAR(probabilities[1], ratio / (1.0 + ratio), 1e-9);
-  EXPECT_GT(probabilities[0], 0.5);  // which it was, though less probable at first
+  EXPECT_GT(probabilities[0], 0.5);  // the true way, though less probable at first
   filter.begin();
   EXPECT_DOUBLE_EQ(filter.probabilities()[0], 0.3);
 }

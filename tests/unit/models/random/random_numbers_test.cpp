@@ -1,4 +1,4 @@
-// The random numbers: statistics, independence of streams, and that a key is all that matters.
+// The random numbers: statistics, independence of streams, and dependence on the key alone.
 #include "models/random/random_numbers.hpp"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace qsmpc::models {
 namespace random_numbers_test {
 
 constexpr int kCount = 20000;
-// Two-sided limit of a standard normal number that 1 of 10 000 exceeds: seeds are fixed, so that a
-// failure means a change of the generator.
+// Two-sided limit of a standard normal number that 1 of 10 000 exceeds; seeds are fixed, so a
+// failure means that the generator has changed.
 constexpr double kLimit = 3.89;
 
 RandomKey key_at(std::uint64_t step, RandomStream stream = RandomStream::kDisturbance) {
@@ -48,7 +48,7 @@ TEST(GaussianSampler, takes_a_covariance_without_full_rank) {
   const GaussianSampler line(Eigen::Vector2d::Zero(), direction * direction.transpose());
   for (int k = 0; k < 100; ++k) {
     const Eigen::VectorXd value = line.sample(key_at(k));
-    // The root of an eigenvalue that should be zero is that of a rounding error.
+    // The eigenvalue should be zero; its root is that of a rounding error.
     EXPECT_NEAR(value[1], 2.0 * value[0], 1e-6);
     EXPECT_GT(std::abs(value[0]), 0.0);
   }
@@ -76,7 +76,7 @@ TEST(RandomNumbers, depend_on_the_key_alone) {
   forwards.reserve(10);
   for (int k = 0; k < 10; ++k) forwards.push_back(standard_normal_sample(7, key_at(k)));
   for (int k = 9; k >= 0; --k) EXPECT_EQ(standard_normal_sample(7, key_at(k)), forwards[k]);
-  // A longer sample begins with the shorter one.
+  // A longer sample starts with the shorter one.
   EXPECT_EQ(standard_normal_sample(3, key_at(4)), Eigen::VectorXd(forwards[4].head(3)));
 }
 
@@ -108,7 +108,7 @@ double correlation_with(const RandomKey& offset) {
 }
 
 TEST(RandomNumbers, random_words_are_all_different_and_depend_on_the_key_alone) {
-  std::vector<std::uint64_t> words(1001);  // no multiple of what the generator gives at once
+  std::vector<std::uint64_t> words(1001);  // not a multiple of the generator's block
   std::vector<std::uint64_t> first(10);
   random_words(key_at(3, RandomStream::kBootstrap), words);
   random_words(key_at(3, RandomStream::kBootstrap), first);
@@ -120,7 +120,7 @@ TEST(RandomNumbers, random_words_are_all_different_and_depend_on_the_key_alone) 
 }
 
 TEST(RandomNumbers, of_neighbouring_keys_are_uncorrelated) {
-  // A correlation of independent numbers deviates by 1/sqrt(n).
+  // The correlation of independent numbers has standard deviation 1/sqrt(n).
   const double limit = kLimit / std::sqrt(kCount);
   EXPECT_LT(std::abs(correlation_with(key_at(0, RandomStream::kInitialState))), limit);
   EXPECT_LT(std::abs(correlation_with(key_at(0, RandomStream::kSensor))), limit);
@@ -149,7 +149,7 @@ TEST(RandomNumbers, are_distributed_as_they_say) {
   }
   EXPECT_GT(uniform.front(), 0.0);
   EXPECT_LE(uniform.back(), 1.0);
-  // Kolmogorov and Smirnov: exceeded by 1 of 10 000 samples.
+  // Kolmogorov-Smirnov limit: exceeded by 1 of 10 000 samples.
   const double limit = 2.23 / std::sqrt(kCount);
   EXPECT_LT(normal_distance, limit);
   EXPECT_LT(uniform_distance, limit);

@@ -1,4 +1,4 @@
-// What rollouts cost, against one path at a time.
+// Costs of rollouts, compared with one path at a time.
 #include "controller/control/mppi/rollouts.hpp"
 
 #include <cmath>
@@ -14,9 +14,9 @@ namespace rollouts_test {
 
 using namespace testing;
 
-constexpr Eigen::Index kSamples = 21;  // no multiple of any vector's width
+constexpr Eigen::Index kSamples = 21;  // not a multiple of any vector width
 
-/// The car with a body of two discs, before a block, with a cost that is not diagonal.
+/// The car with a body of two discs, before a block, with a non-diagonal cost.
 PlannerSettings long_car() {
   PlannerSettings problem = block_settings();
   problem.horizon = 6;
@@ -50,7 +50,8 @@ struct ExpectedCost {
   double unsafe = 0.0;
 };
 
-/// One sample's, that starts at the first column of `path`; the others are added after each step.
+/// The cost of one sample that starts at the first column of `path`; the other columns are added
+/// after each step.
 ExpectedCost expected_cost(const models::Dynamics& dynamics, const PlannerSettings& problem,
                            const UnsafeCost& cost, const Eigen::MatrixXd& inputs,
                            const Eigen::MatrixXd& path) {
@@ -73,7 +74,7 @@ Eigen::MatrixXd inputs_of(const SampleChunk& chunk, Eigen::Index sample, Eigen::
   return chunk.inputs.col(sample).reshaped(input_dim, chunk.inputs.rows() / input_dim);
 }
 
-/// `path`, with its first column about `start`.
+/// `path` with `start` added to its first column.
 Eigen::MatrixXd path_from(const Eigen::VectorXd& start, Eigen::MatrixXd path) {
   path.col(0) += start;
   return path;
@@ -84,7 +85,7 @@ TEST(Rollouts, cost_the_quadratic_cost_and_the_unsafe_cost_of_every_stage) {
   const PlannerSettings problem = long_car();
   const UnsafeCost cost{.collision = 70.0, .proximity = 11.0, .margin = 0.4};
   Rollouts rollouts(*car, problem, cost);
-  const Eigen::Vector3d start(0.0, 0.36, 0.15);  // past the block, or into it
+  const Eigen::Vector3d start(0.0, 0.36, 0.15);  // past the block or into it
   rollouts.place(start, problem.cost);
   SampleChunk chunk = random_chunk(*car, problem.horizon, 5);
   Eigen::MatrixXd path = Eigen::MatrixXd::Zero(3, problem.horizon + 1);
@@ -95,7 +96,7 @@ TEST(Rollouts, cost_the_quadratic_cost_and_the_unsafe_cost_of_every_stage) {
     for (Eigen::Index i = 0; i < kSamples; ++i) {
       const ExpectedCost expected =
           expected_cost(*car, problem, cost, inputs_of(chunk, i, 1), path_from(start, path));
-      // Sines of other libraries, and sums in another order.
+      // Different sine implementations, and sums in a different order.
       EXPECT_NEAR(chunk.quadratic[i], expected.quadratic, 1e-10 * expected.quadratic);
       EXPECT_NEAR(chunk.unsafe[i], expected.unsafe, 1e-9 * (1.0 + expected.unsafe));
       if (expected.unsafe > cost.collision) ++unsafe;
@@ -108,7 +109,7 @@ TEST(Rollouts, cost_the_quadratic_cost_and_the_unsafe_cost_of_every_stage) {
   EXPECT_NEAR(inputs[3], 0.1 * chunk.inputs.col(3).squaredNorm(), 1e-12 * inputs[3]);
 }
 
-// Means and covariances of the noise, within five deviations of what samples have.
+// Means and covariances of the noise, within five standard errors.
 TEST(NoisePaths, have_the_belief_and_the_noise) {
   constexpr int kPaths = 20000;
   constexpr int kHorizon = 2;

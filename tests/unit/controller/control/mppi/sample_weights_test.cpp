@@ -1,4 +1,4 @@
-// Weights, temperatures and risks of samples against their definitions.
+// Weights, temperatures and risks of samples, compared with their definitions.
 #include "controller/control/mppi/sample_weights.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ TEST(SampleWeights, are_exponentials_of_cost_and_tilt) {
   EXPECT_NEAR(effective, 1.0 / expected.square().sum(), 1e-9 * effective);
 }
 
-// Costs too large for their exponentials to be numbers: only differences count.
+// Costs so large that their exponentials underflow: only differences count.
 TEST(SampleWeights, depend_on_differences_of_costs_alone) {
   const Eigen::ArrayXd cost = random_numbers(50, 3.0, 3);
   const Eigen::ArrayXd tilt = Eigen::ArrayXd::Zero(50);
@@ -47,7 +47,7 @@ TEST(SampleWeights, depend_on_differences_of_costs_alone) {
   Eigen::ArrayXd shifted(50);
   (void)softmin_weights({cost, tilt}, 2.0, weights);
   (void)softmin_weights({cost + 1e6, tilt}, 2.0, shifted);
-  // The sum with 1e6 rounds costs to 1e-10.
+  // Adding 1e6 rounds costs to 1e-10.
   EXPECT_LE((weights - shifted).abs().maxCoeff(), 1e-9);
 }
 
@@ -60,7 +60,7 @@ TEST(SampleWeights, of_samples_without_a_finite_cost_are_zero) {
 
 TEST(SampleWeights, effective_temperature_leaves_the_wanted_number_of_samples) {
   Eigen::ArrayXd cost = random_numbers(1000, 500.0, 4);
-  // A few that collide must not decide how warm it is among the others.
+  // A few collisions must not determine the temperature among the others.
   cost.head(100) += 1e9;
   const Eigen::ArrayXd tilt = Eigen::ArrayXd::Zero(1000);
   Eigen::ArrayXd weights(1000);
@@ -72,7 +72,7 @@ TEST(SampleWeights, effective_temperature_leaves_the_wanted_number_of_samples) {
   EXPECT_GT(effective_temperature({same, tilt}, 50.0, weights), 0.0);
 }
 
-/// min_z z + E(X − z)₊ / (1 − α): piecewise linear, so least at one of the values.
+/// min_z z + E(X − z)₊ / (1 − α): piecewise linear, so the minimum is at one of the values.
 double defined_risk(const std::vector<double>& values, double level) {
   double least = kInfinity;
   for (const double z : values) {
@@ -108,7 +108,7 @@ TEST(InputSmoothing, keeps_parabolas_and_averages_what_wavers) {
   for (int k = 0; k < kHorizon; ++k) inputs(0, k) = 0.3 * k * k - 2.0 * k + 1.0;
   const Eigen::MatrixXd parabola = inputs;
   smoothing.smooth(inputs);
-  // Whose windows end before the held last input, and begin behind the inputs before the drive.
+  // Inputs whose windows reach neither the held last input nor the inputs before the drive.
   for (int k = kHalf; k + kHalf < kHorizon; ++k) {
     EXPECT_NEAR(inputs(0, k), parabola(0, k), 1e-9) << k;
   }

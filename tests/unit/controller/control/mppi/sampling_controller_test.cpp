@@ -1,4 +1,4 @@
-// The controllers that sample: against the regulator and the law that their weights stand for.
+// The sampling controllers, compared with the regulator and the law that their weights represent.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -76,7 +76,7 @@ class LinearProblem {
            states.rightCols<1>().col(0).dot(problem.cost.terminal * states.rightCols<1>().col(0));
   }
 
-  /// Exact but for rounding, as the cost is quadratic.
+  /// Exact up to rounding, as the cost is quadratic.
   void find_quadratic() {
     const int size = problem.horizon;
     const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(size, size);
@@ -94,7 +94,7 @@ class LinearProblem {
 };
 
 /// The law exp(−S/λ) N(0, Σ) of the inputs, whose mean the weights estimate with samples of
-/// N(centre, Σ), and the estimate's deviation.
+/// N(centre, Σ), and the standard deviation of the estimate.
 class WeightedLaw {
  public:
   WeightedLaw(const LinearProblem& problem, const MppiSettings& mppi)
@@ -105,7 +105,8 @@ class WeightedLaw {
 
   [[nodiscard]] double first_mean() const { return mean_[0]; }
 
-  /// Of the self-normalised estimate of the first input's mean, to first order in 1/S:
+  /// Standard deviation of the self-normalised estimate of the first input's mean, to first order
+  /// in 1/S:
   /// √(E_q[(p/q)² (v − μ)²] / S), with p the law and q = N(centre, Σ).
   [[nodiscard]] double first_deviation(const Eigen::VectorXd& centre) const {
     const Eigen::MatrixXd of_ratio = 2.0 * precision_ - base_;  // the precision of p²/q
@@ -126,7 +127,7 @@ class WeightedLaw {
   Eigen::VectorXd mean_;
 };
 
-// The tolerance is what the temperature moves the mean by, and five deviations of its estimate.
+// The tolerance is the shift of the mean by the temperature plus five deviations of its estimate.
 TEST(MppiController, tends_to_the_regulator_as_samples_grow_and_the_temperature_falls) {
   const LinearProblem linear;
   const auto regulator = make_controller("lqr", *linear.dynamics, {.problem = linear.problem});
@@ -153,8 +154,8 @@ TEST(MppiController, tends_to_the_regulator_as_samples_grow_and_the_temperature_
   }
 }
 
-// With the control term samples about any nominal inputs estimate the same law, about 0; without
-// it each iteration goes on from the last one's mean, towards the regulator.
+// With the control term, samples about any nominal inputs estimate the same law, about 0; without
+// it, each iteration continues from the last one's mean, towards the regulator.
 TEST(MppiController, the_control_term_makes_up_for_where_samples_are_drawn) {
   const LinearProblem linear;
   MppiSettings mppi{.samples = 100'000,
@@ -222,7 +223,7 @@ TEST(SamplingControllers, keep_the_bounds_of_inputs_however_wide_they_draw) {
   }
 }
 
-/// The least clearance along the plan for the first period, all iterations taken.
+/// The smallest clearance along the plan for the first period, after all iterations.
 double planned_clearance(const std::string& kind, const ControllerSettings& settings) {
   const auto car = dubins_car();
   Gaussian belief = dubins_belief();
@@ -234,7 +235,7 @@ double planned_clearance(const std::string& kind, const ControllerSettings& sett
   return clearances(decision.policy->states, UnsafeSet(settings.problem.safe_set)).minCoeff();
 }
 
-// In the block's way: only a plan that knows of the noise keeps what it needs for it.
+// Heading for the block: only a plan that accounts for the noise keeps the clearance it needs.
 TEST(SamplingControllers, keep_clear_of_a_block_and_farther_off_where_they_know_the_noise) {
   ControllerSettings settings{.problem = block_settings()};
   Box& block = std::get<Box>(settings.problem.safe_set.obstacles.front().form);
@@ -247,7 +248,7 @@ TEST(SamplingControllers, keep_clear_of_a_block_and_farther_off_where_they_know_
   const double aware = planned_clearance("risk_mppi", settings);
   EXPECT_GT(plain, 0.0);
   EXPECT_GT(aware, plain + 0.05);
-  // What it costs to collide is what makes them keep clear.
+  // The collision cost is what keeps them clear.
   settings.mppi.obstacle_cost = 0.0;
   EXPECT_LT(planned_clearance("mppi", settings), 0.0);
 }
