@@ -56,7 +56,7 @@ ChancePlannerSettings checked(ChancePlannerSettings settings, const models::Dyna
   check_chance_settings(settings.chance);
   if (settings.chance.memory > 0 && !chance_constraint_entry(settings.constraint).samples) {
     throw std::invalid_argument("chance constraint: " + settings.constraint +
-                                " samples no noise that inputs could answer to");
+                                " samples no noise, so the memory must be 0");
   }
   return settings;
 }
@@ -304,7 +304,7 @@ const ChancePlan& ChancePlanner::plan(const Gaussian& belief, PathDraw draw,
   };
   if (!fits(draw.start) || draw.noise.size() != draw_.noise.size() ||
       !std::all_of(draw.noise.begin(), draw.noise.end(), fits)) {
-    throw std::invalid_argument("chance constraint: the paths are not those that were asked for");
+    throw std::invalid_argument("chance constraint: the paths do not have the expected sizes");
   }
   draw_ = std::move(draw);
   progress_.reset();

@@ -80,7 +80,7 @@ std::shared_ptr<const controller::RoadWalls> road_of(const TargetPath& path,
   if (const auto place = controller::where_edges_meet(edges)) {
     note(nearest_row(path.rows, *place),
          fmt::format("edges that meet near ({:.4g}, {:.4g})", place->x(), place->y()),
-         "a road that crosses neither itself nor another stretch of it, or no widths");
+         "a road whose stretches do not cross one another or themselves, or no widths");
     return nullptr;
   }
   return std::make_shared<const controller::RoadWalls>(std::move(edges));

@@ -36,7 +36,7 @@ class RankSelection {
   RankSelection(const ValueStream& each, std::int64_t count, const std::vector<std::int64_t>& ranks)
       : each_(each) {
     for (const std::int64_t rank : ranks) {
-      if (rank < 1 || rank > count) throw std::invalid_argument("ranks: one that is not there");
+      if (rank < 1 || rank > count) throw std::invalid_argument("ranks: a rank out of range");
       wanted_.push_back({.prefix = 0, .rank = rank, .count = count});
     }
   }

@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenMotion{"path_and_route", "{path: [[1, 2, 3]], route: [[1, 2]], speed: 1}", ".route",
                      "a list", "no route beside a path"},
         BrokenMotion{"two_at_once", "{path: [[1, 10, 9], [1, 11, 9]]}", "", "another motion",
-                     "times that ascend"},
+                     "ascending times"},
         BrokenMotion{"at_once", "{path: [[0, 10, 9]]}", "", "another motion", "the first above 0"},
         BrokenMotion{"jump", "{path: [[0.01, 19, 9]]}", "", "another motion", "must not jump"},
         BrokenMotion{"nothing", "{}", "", "an empty mapping", "a velocity or a route"},
@@ -154,7 +154,7 @@ TEST(Motions, of_a_box_of_states_are_refused) {
   const InputError::Where where =
       refusal_of(with_obstacles("    - {x: [7, 8], motion: {velocity: [1, 0]}}\n"));
   EXPECT_EQ(where.key, "safe_set.obstacles.0.motion");
-  EXPECT_THAT(where.expected, HasSubstr("only these move"));
+  EXPECT_THAT(where.expected, HasSubstr("only these can move"));
 }
 
 }  // namespace motion_keys_test
