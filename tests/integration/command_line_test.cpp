@@ -120,7 +120,7 @@ TEST(Init, replaces_nothing_and_takes_a_path) {
   expect_refused({"init", file}, "an existing file");
   EXPECT_EQ(read_text(file), "precious");
   std::filesystem::create_symlink(folder / "nowhere", folder / "link.yaml");
-  expect_refused({"init", folder / "link.yaml"}, "a file that exists");
+  expect_refused({"init", folder / "link.yaml"}, "an existing file");
   EXPECT_FALSE(std::filesystem::exists(folder / "nowhere"));
   EXPECT_EQ(run_qsmpc({"init"}, {.folder = folder.path()}).exit_code, 0);
   EXPECT_THAT(read_text(folder / "my_scenario.yaml"), HasSubstr("name: \"my_scenario\""));

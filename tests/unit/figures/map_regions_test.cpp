@@ -124,7 +124,7 @@ TEST(MapFigure, a_moving_obstacle_is_a_way_and_outlines_and_has_no_part_in_the_a
   EXPECT_FALSE(contains(svg_figure({square_map()}), ".mover{fill"));
   PlaneMap still = map;
   still.movers = {{.start = {disc(2, 1, 0.5)}}};
-  EXPECT_FALSE(contains(map_figure(still), "nearest to it"));
+  EXPECT_FALSE(contains(map_figure(still), "closest to the vehicle"));
   map.area.reset();
   const MapRectangle area = map_area(map);
   map.movers.front().way.push_back({300, 300});

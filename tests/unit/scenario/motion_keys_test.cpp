@@ -141,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenMotion{"seen_exactly",
                      "{ways: [{probability: 0.5, velocity: [1, 0]}, "
                      "{probability: 0.5, velocity: [0, 1]}]}",
-                     "", "another motion", "what is seen above 0"}),
+                     "", "another motion", "a seen_deviation above 0"}),
     [](const auto& each) { return each.param.name; });
 
 TEST(Motions, that_answer_to_the_vehicle_leave_no_bound) {
