@@ -6,6 +6,7 @@ import {after, before, test} from "node:test";
 
 import {artefacts, openPage, qsmpc, sidewaysScroll, softwareGl, source, startBrowser, temporaryFolder,
         until} from "./pages.mjs";
+import {pictureAt, pixelsOf} from "./scene.mjs";
 
 let browser;
 let folder;
@@ -28,36 +29,21 @@ async function open(options) {
 const whole = (page) => page.locator("#scene .whole").click();
 
 // What is visible at a time (s): the number of pixels similar to the first one, the number with the
-// car's paint and their centre (as fractions of the picture), the number of coloured pixels, and
-// how many of those are warm. The picture can only be read within its own frame.
-const seenAt = (page, time) => page.evaluate((value) => new Promise((resolve) => {
-  const slider = document.getElementById("time");
-  slider.value = value;
-  slider.dispatchEvent(new Event("input"));
-  requestAnimationFrame(() => {
-    const canvas = document.querySelector("#scene canvas");
-    const copy = document.createElement("canvas");
-    copy.width = canvas.width;
-    copy.height = canvas.height;
-    const context = copy.getContext("2d");
-    context.drawImage(canvas, 0, 0);
-    const {data} = context.getImageData(0, 0, copy.width, copy.height);
-    const seen = {all: data.length / 4, ground: 0, paint: 0, x: 0, y: 0, coloured: 0, warm: 0};
-    for (let i = 0; i < data.length; i += 4) {
-      const [r, g, b] = data.subarray(i, i + 3);
-      if (r === data[0] && g === data[1] && b === data[2]) ++seen.ground;
-      if (Math.max(r, g, b) - Math.min(r, g, b) > 60) ++seen.coloured;
-      if (r > g && g > b && r - b > 60) ++seen.warm;
-      if (r < 150 || g > 0.62 * r || b > 0.25 * r) continue;
-      ++seen.paint;
-      seen.x += (i / 4) % copy.width / copy.width;
-      seen.y += Math.floor(i / 4 / copy.width) / copy.height;
-    }
-    seen.x /= seen.paint;
-    seen.y /= seen.paint;
-    resolve(seen);
-  });
-}), String(time));
+// car's paint and their centre, the number of coloured pixels, of the warm ones among them, and of
+// those with the colour of an obstacle's top.
+async function seenAt(page, time) {
+  const picture = await pictureAt(page, time);
+  const [red, green, blue] = picture.data;
+  const paint = pixelsOf(picture, (r, g, b) => r >= 150 && g <= 0.62 * r && b <= 0.25 * r);
+  const count = (holds) => pixelsOf(picture, holds).count;
+  return {
+    all: picture.width * picture.height, paint: paint.count, x: paint.x, y: paint.y,
+    ground: count((r, g, b) => r === red && g === green && b === blue),
+    coloured: count((r, g, b) => Math.max(r, g, b) - Math.min(r, g, b) > 60),
+    warm: count((r, g, b) => r > g && g > b && r - b > 60),
+    tops: count((r, g, b) => r > 130 && r < 160 && b - r > 8 && b - r < 30 && g > r && g < b),
+  };
+}
 
 test("draws the vehicle from its file without an error and asks for nothing", async () => {
   const {page, seen} = await open();
@@ -146,24 +132,7 @@ test("obstacles of any outline are drawn, and leave the vehicle visible", async 
   await whole(page);
   await page.waitForTimeout(100);
   // Tops are the only large areas of their colour.
-  const tops = await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => {
-    document.getElementById("time").dispatchEvent(new Event("input"));
-    requestAnimationFrame(() => {
-      const canvas = document.querySelector("#scene canvas");
-      const copy = document.createElement("canvas");
-      copy.width = canvas.width;
-      copy.height = canvas.height;
-      const context = copy.getContext("2d");
-      context.drawImage(canvas, 0, 0);
-      const {data} = context.getImageData(0, 0, copy.width, copy.height);
-      let count = 0;
-      for (let i = 0; i < data.length; i += 4) {
-        const [r, g, b] = data.subarray(i, i + 3);
-        if (r > 130 && r < 160 && b - r > 8 && b - r < 30 && g > r && g < b) ++count;
-      }
-      resolve(count);
-    });
-  })));
+  const {tops} = await seenAt(page, 2.4);
   assert.ok(tops > 2000, `${tops} pixels of the obstacles' tops`);
   await page.locator("#scene").screenshot({path: join(artefacts, "scene-shapes.png")});
   assert.deepEqual(seen.errors, []);

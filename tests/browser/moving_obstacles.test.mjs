@@ -4,6 +4,7 @@ import {join} from "node:path";
 import {after, before, test} from "node:test";
 
 import {artefacts, openPage, qsmpc, softwareGl, startBrowser, temporaryFolder, until} from "./pages.mjs";
+import {pictureAt, pixelsOf} from "./scene.mjs";
 
 const kPeriod = 0.1;  // s
 
@@ -67,27 +68,9 @@ test("their forecasts grow along the plan, follow the period and can be hidden",
   await page.close();
 });
 
-// The number of blue pixels in the 3D view, and their mean position to the right.
-const blueAt = (page, time) => page.evaluate((value) => new Promise((resolve) => {
-  const slider = document.getElementById("time");
-  slider.value = value;
-  slider.dispatchEvent(new Event("input"));
-  requestAnimationFrame(() => {
-    const canvas = document.querySelector("#scene canvas");
-    const copy = document.createElement("canvas");
-    [copy.width, copy.height] = [canvas.width, canvas.height];
-    const context = copy.getContext("2d");
-    context.drawImage(canvas, 0, 0);
-    const {data} = context.getImageData(0, 0, copy.width, copy.height);
-    let [count, x] = [0, 0];
-    for (let i = 0; i < data.length; i += 4) {
-      if (data[i + 2] < data[i] + 60 || data[i + 2] < data[i + 1] + 20) continue;
-      ++count;
-      x += (i / 4) % copy.width / copy.width;
-    }
-    resolve({count, x: x / count});
-  });
-}), String(Number(time.toFixed(1))));
+// The number of blue pixels in the 3D view, and their centre.
+const blueAt = async (page, time) =>
+  pixelsOf(await pictureAt(page, time.toFixed(1)), (r, g, b) => b >= r + 60 && b >= g + 20);
 
 test("they move in three dimensions, too", async () => {
   const {page, seen} = await open();

@@ -26,8 +26,8 @@ struct Draws {
 
 class SampledProblem {
  public:
-  /// `dynamics` must outlive the problem. Throws std::invalid_argument for the thesis's penalty,
-  /// which is not implemented here.
+  /// `dynamics` must outlive the problem. Takes every penalty except the thesis's, for which it
+  /// throws std::invalid_argument.
   SampledProblem(const models::Dynamics& dynamics, const controller::PlannerSettings& settings,
                  const controller::Gaussian& belief, Draws draws);
 
