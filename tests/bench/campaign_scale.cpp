@@ -207,7 +207,6 @@ double stage(const char* name, const std::function<void()>& work) {
 bool measure(const std::vector<std::string>& folders, const std::string& merged) {
   double seconds = stage("merge, checksums", [&] { (void)merge_shards(folders, merged); });
   const StoreReader store(merged);
-  seconds += stage("checksums again", [&] { store.verify(); });
   CampaignStatistics statistics;
   seconds += stage("statistics", [&] { statistics = campaign_statistics(store); });
   seconds += stage("episodes.csv", [&] { write_episodes_csv(store, merged + "/episodes.csv"); });

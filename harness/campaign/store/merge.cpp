@@ -20,6 +20,7 @@
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
+#include "harness/threads/workers.hpp"
 #include "harness/trace/trace_file.hpp"
 
 namespace qsmpc::harness {
@@ -207,9 +208,8 @@ std::int64_t copy_traces(const std::string& folder, const std::string& out) {
 
 /// Refuses a store with an episode that fails its checksum; names the damaged one of the source
 /// folders.
-void refuse_damage(SQLite::Database& database, const std::vector<std::string>& folders,
-                   const std::string& path) {
-  const std::optional<StoredEpisode> damaged = damaged_episode(database);
+void refuse_damage(const std::string& path, const std::vector<std::string>& folders) {
+  const std::optional<StoredEpisode> damaged = damaged_episode(path, available_threads());
   if (!damaged) return;
   for (const std::string& folder : folders) StoreReader(folder).verify();
   throw IoError(fmt::format("{}: the rows of variant {}, seed {} changed while they were copied",
@@ -229,7 +229,7 @@ std::int64_t write_store(const std::string& path, const std::vector<std::string>
   for (const StoredVariant& variant : read_variants(store.database())) {
     require_seeds(store.database(), variant, sorted, seeds, policy.incomplete);
   }
-  refuse_damage(store.database(), folders, path);
+  refuse_damage(path, folders);
   return store.database().execAndGet("SELECT count(*) FROM episode").getInt64();
 }
 

@@ -1,17 +1,21 @@
 #include "harness/campaign/store/store_checksum.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string_view>
 #include <vector>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "harness/campaign/store/store_periods.hpp"
+#include "harness/campaign/store/store_rows.hpp"
 #include "harness/text/fnv1a.hpp"
+#include "harness/threads/workers.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -69,6 +73,59 @@ void add_integer(std::uint64_t value, Hash& hash) {
 void add_real(double value, Hash& hash) {
   hash.add(std::isnan(value) ? kNullType : kRealType);
   if (!std::isnan(value)) hash.add(std::bit_cast<std::uint64_t>(value));
+}
+
+/// Successive seeds that one thread checks, since neighbours are on the same pages.
+constexpr std::uint64_t kBlock = 64;
+
+SQLite::Database open_to_read(const std::string& path) {
+  return {path, SQLite::OPEN_READONLY | SQLite::OPEN_NOMUTEX, kStorePatience};
+}
+
+/// The first damaged episode that any thread has found.
+class Damage {
+ public:
+  /// Whether `episode` comes after one that was found.
+  [[nodiscard]] bool is_before(const StoredEpisode& episode) {
+    const std::lock_guard lock(mutex_);
+    return first_ && *first_ < episode;
+  }
+
+  void found(const StoredEpisode& episode) {
+    const std::lock_guard lock(mutex_);
+    if (!first_ || episode < *first_) first_ = episode;
+  }
+
+  [[nodiscard]] std::optional<StoredEpisode> first() {
+    const std::lock_guard lock(mutex_);
+    return first_;
+  }
+
+ private:
+  std::mutex mutex_{};
+  std::optional<StoredEpisode> first_{};
+};
+
+/// Checks the episodes that fall to `worker` out of `workers`. Which these are follows from their
+/// keys, so that it is the same for all threads even while a campaign adds to the store.
+void find_damage(const std::string& path, std::uint64_t worker, std::uint64_t workers,
+                 Damage& damage) {
+  SQLite::Database database = open_to_read(path);
+  EpisodeChecksums checksums(database);
+  SQLite::Statement statement(
+      database, "SELECT variant, seed, checksum FROM episode_checksum ORDER BY variant, seed");
+  while (statement.executeStep()) {
+    const StoredEpisode episode{.variant = statement.getColumn(0).getInt64(),
+                                .seed = statement.getColumn(1).getInt64()};
+    const std::uint64_t block = static_cast<std::uint64_t>(episode.seed) / kBlock +
+                                static_cast<std::uint64_t>(episode.variant);
+    if (block % workers != worker) continue;
+    if (damage.is_before(episode)) return;
+    if (checksums.of(episode.variant, episode.seed) != statement.getColumn(2).getInt64()) {
+      damage.found(episode);
+      return;
+    }
+  }
 }
 
 }  // namespace
@@ -161,17 +218,15 @@ std::int64_t EpisodeChecksums::of(std::int64_t variant, std::int64_t seed) {
   return implementation_->of(variant, seed);
 }
 
-std::optional<StoredEpisode> damaged_episode(SQLite::Database& database) {
-  EpisodeChecksums checksums(database);
-  SQLite::Statement statement(database, "SELECT variant, seed, checksum FROM episode_checksum");
-  while (statement.executeStep()) {
-    const StoredEpisode episode{.variant = statement.getColumn(0).getInt64(),
-                                .seed = statement.getColumn(1).getInt64()};
-    if (checksums.of(episode.variant, episode.seed) != statement.getColumn(2).getInt64()) {
-      return episode;
-    }
-  }
-  return std::nullopt;
+std::optional<StoredEpisode> damaged_episode(const std::string& path, int threads) {
+  const int count = open_to_read(path).execAndGet("SELECT count(*) FROM episode_checksum").getInt();
+  const int workers = std::clamp(count / static_cast<int>(kBlock), 1, threads);
+  Damage damage;
+  run_workers(workers, [&](int worker) {
+    find_damage(path, static_cast<std::uint64_t>(worker), static_cast<std::uint64_t>(workers),
+                damage);
+  });
+  return damage.first();
 }
 
 }  // namespace qsmpc::harness

@@ -2,9 +2,11 @@
 // statistics unnoticed.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 // NOLINTNEXTLINE(readability-identifier-naming): the name that its library gives it
 namespace SQLite {
@@ -31,14 +33,18 @@ class EpisodeChecksums {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// The store's key of an episode.
+/// The store's key of an episode, in the store's order.
 struct StoredEpisode {
   std::int64_t variant = 0;
   std::int64_t seed = 0;
+
+  friend auto operator<=>(const StoredEpisode&, const StoredEpisode&) = default;
 };
 
-/// The first episode whose rows do not match its checksum or are missing; nothing if all are
-/// intact. Episodes of earlier versions have no checksum and count as intact.
-[[nodiscard]] std::optional<StoredEpisode> damaged_episode(SQLite::Database& database);
+/// The first episode of the store at `path` whose rows do not match its checksum or are missing, in
+/// the order of variant and seed; nothing if all are intact. Episodes of earlier versions have no
+/// checksum and count as intact. Reads with up to `threads` ≥ 1 threads, each with its own
+/// connection; what is not yet committed is not seen. Throws SQLite::Exception.
+[[nodiscard]] std::optional<StoredEpisode> damaged_episode(const std::string& path, int threads);
 
 }  // namespace qsmpc::harness

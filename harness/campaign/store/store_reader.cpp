@@ -17,6 +17,7 @@
 #include "harness/errors.hpp"
 #include "harness/files/text_file.hpp"
 #include "harness/text/printable.hpp"
+#include "harness/threads/workers.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -130,7 +131,7 @@ StoreReader::~StoreReader() = default;
 void StoreReader::verify() const {
   std::optional<StoredEpisode> damaged;
   with_store_errors(implementation_->path,
-                    [&] { damaged = damaged_episode(implementation_->database); });
+                    [&] { damaged = damaged_episode(implementation_->path, available_threads()); });
   if (!damaged) return;
   throw IoError(
       fmt::format("{}: the rows of variant {}, seed {} differ from those that were written: the "

@@ -2,10 +2,13 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -13,6 +16,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/campaign/store/store_checksum.hpp"
 #include "harness/campaign/store/store_rows.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
@@ -75,6 +79,29 @@ TEST_F(StoreFileTest, a_change_of_any_column_of_an_episode_is_seen) {
       EXPECT_THROW(StoreReader(folder.path()).verify(), IoError) << table << "." << column;
       std::ofstream(path(), std::ios::binary) << before;
       EXPECT_NO_THROW(StoreReader(folder.path()).verify()) << "as it was";
+    }
+  }
+}
+
+TEST_F(StoreFileTest, the_first_damaged_episode_is_found_by_any_number_of_threads) {
+  constexpr std::int64_t kEpisodes = 300;
+  {
+    Store store = open(testing::quick_campaign());
+    for (std::int64_t seed = 0; seed < kEpisodes; ++seed) {
+      store.add(testing::example_row(seed % 2, static_cast<std::uint64_t>(seed)), false);
+    }
+  }
+  const auto found = [&](int threads) {
+    const std::optional<StoredEpisode> episode = damaged_episode(path(), threads);
+    return episode ? fmt::format("{}, {}", episode->variant, episode->seed) : "none";
+  };
+  for (const int threads : {1, 2, 3, 8}) EXPECT_EQ(found(threads), "none");
+  // Each is in another block of seeds and comes before those of the line above.
+  for (const auto& [variant, seed] : {std::pair{1, 299}, {1, 129}, {0, 298}, {0, 200}, {0, 2}}) {
+    database().exec(fmt::format(
+        "UPDATE episode SET cost = cost + 1 WHERE variant = {} AND seed = {}", variant, seed));
+    for (const int threads : {1, 2, 3, 8}) {
+      EXPECT_EQ(found(threads), fmt::format("{}, {}", variant, seed)) << threads << " threads";
     }
   }
 }
