@@ -120,9 +120,10 @@ int drive_with_tasks(const std::string& folder, const TaskLaunch& request, const
   const StartedTasks started = start_tasks(folder, request, own_object_file());
   if (!started.launcher->stays()) {
     if (!talk.quiet) {
+      const int tasks = launch_tasks(launch_options_from_text(request.options));
       std::cerr << fmt::format(
-          "qsmpc: {} tasks submitted; qsmpc campaign status, cancel and resume work on {}\n",
-          launch_tasks(launch_options_from_text(request.options)), printable(folder, 400));
+          "qsmpc: {} task{} submitted; qsmpc campaign status, cancel and resume work on {}\n",
+          tasks, tasks == 1 ? "" : "s", printable(folder, 400));
     }
     return kDone;
   }
