@@ -186,7 +186,7 @@ TEST(CampaignPage, has_tables_and_figures_with_texts_that_are_escaped) {
   EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
   EXPECT_TRUE(testing::contains(page, "1: often &lt;b&gt;"));
   EXPECT_FALSE(testing::contains(page, "often <b>"));
-  EXPECT_TRUE(testing::contains(page, "1 less 0"));
+  EXPECT_TRUE(testing::contains(page, "1 − 0"));
   EXPECT_EQ(testing::occurrences(page, "<figure"), 4 + 2)
       << "of one pair of variants there is a table";
 }

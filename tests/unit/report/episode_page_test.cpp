@@ -243,7 +243,7 @@ TEST(EpisodePage, leaving_the_bounds_is_a_failure) {
 
 TEST(EpisodePage, says_what_a_certificate_does_not_cover) {
   const std::string page = episode_page(EpisodeView(testing::example_trace()), with_video());
-  EXPECT_TRUE(testing::contains(page, "plan as planned"));
+  EXPECT_TRUE(testing::contains(page, "holds for the plan as made"));
   EXPECT_TRUE(testing::contains(page, "Neither covers the plant’s mismatch"));
   EXPECT_TRUE(testing::contains(page, "published method, worst stage: not a bound"));
 }

@@ -153,7 +153,7 @@ TEST(PathKeys, a_road_narrower_than_the_vehicle_is_told) {
                  "vehicle: {footprint: [{radius: 0.5}]}\n");
   EXPECT_EQ(where.line, 5);
   EXPECT_EQ(where.key, "target.path.2");
-  EXPECT_THAT(where.found, HasSubstr("0.7 wide"));
+  EXPECT_THAT(where.found, HasSubstr("0.7 m wide"));
   EXPECT_THAT(where.expected, HasSubstr("more than the 1 m"));
 }
 
