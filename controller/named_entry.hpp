@@ -19,7 +19,7 @@ template <class Entry>
     known += (known.empty() ? "" : ", ") + entry.name;
   }
   throw std::invalid_argument("no " + std::string(what) + " '" + std::string(name) +
-                              "'; known are: " + known);
+                              "'; known: " + known);
 }
 
 }  // namespace qsmpc::controller

@@ -79,7 +79,7 @@ CameraKind camera_kind(const std::string& name) {
   if (name == "fixed") {
     return CameraKind::kFixed;
   }
-  throw std::invalid_argument("camera \"" + name + "\" is none of chase, top, fixed");
+  throw std::invalid_argument("camera \"" + name + "\" is not one of chase, top, fixed");
 }
 
 View chase_view(const PlanarPose& pose, double distance, const PictureSize& size) {

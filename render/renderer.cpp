@@ -25,12 +25,12 @@ void check(const PictureOptions& options, std::size_t episodes) {
   if (options.width < kLeastSide || options.height < kLeastSide || options.width > kLargestSide ||
       options.height > kLargestSide) {
     throw std::invalid_argument("picture of " + std::to_string(options.width) + "x" +
-                                std::to_string(options.height) + " pixels: each side is from " +
+                                std::to_string(options.height) + " pixels: each side must be " +
                                 std::to_string(kLeastSide) + " to " + std::to_string(kLargestSide));
   }
   if (episodes < 1 || episodes > 2) {
     throw std::invalid_argument("picture of " + std::to_string(episodes) +
-                                " episodes: it shows one or two");
+                                " episodes: it must show one or two");
   }
 }
 

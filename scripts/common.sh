@@ -16,7 +16,7 @@ fail() {
 # install_packages LIST…: installs the missing Debian packages named in the files. npm may have come
 # with Node.js instead of as a separate package, and the two exclude each other.
 install_packages() {
-  command -v dpkg-query >/dev/null || fail "this script installs Debian packages; elsewhere, install what $* name and build with: cmake --preset release && cmake --build --preset release"
+  command -v dpkg-query >/dev/null || fail "this script installs Debian packages; elsewhere, install the packages listed in $* and build with: cmake --preset release && cmake --build --preset release"
   local missing=() package
   while read -r package; do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||

@@ -42,7 +42,7 @@ double transported_mass(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,
 double worst_case_probability(const Eigen::Ref<const Eigen::VectorXd>& distances,
                               const Eigen::Ref<const Eigen::VectorXd>& weights, double radius) {
   if (distances.size() != weights.size()) {
-    throw std::invalid_argument("worst case: as many distances as weights are needed");
+    throw std::invalid_argument("worst case: the numbers of distances and weights must be equal");
   }
   if (!(distances.array() >= 0.0).all() || !(weights.array() >= 0.0).all()) {
     throw std::invalid_argument("worst case: distances and weights must not be negative");

@@ -24,13 +24,14 @@ void check_chance_settings(const ChanceSettings& settings) {
 const std::vector<ChanceConstraintEntry>& chance_constraints() {
   static const std::vector<ChanceConstraintEntry> table = {
       {.name = "cone",
-       .summary = "Gaussian law, back-offs of standard deviations from linearised obstacles",
+       .summary =
+           "Gaussian law: linearised obstacles, backed off by a multiple of the standard deviation",
        .make = make_cone_constraint},
       {.name = "cantelli",
        .summary = "the same for any law with that mean and covariance, by Cantelli's inequality",
        .make = make_cantelli_constraint},
       {.name = "scenario",
-       .summary = "every sampled path keeps clear",
+       .summary = "every sampled path stays clear",
        .samples = true,
        .make = make_scenario_constraint},
       {.name = "cvar",

@@ -56,7 +56,7 @@ ChancePlannerSettings checked(ChancePlannerSettings settings, const models::Dyna
   check_chance_settings(settings.chance);
   if (settings.chance.memory > 0 && !chance_constraint_entry(settings.constraint).samples) {
     throw std::invalid_argument("chance constraint: " + settings.constraint +
-                                " samples no noise that inputs could answer to");
+                                " samples no noise, so the memory must be 0");
   }
   return settings;
 }
@@ -274,20 +274,22 @@ void ChancePlanner::search(const Gaussian& belief, bool warm, Clock::time_point 
     plan_.evaluations += result.evaluations;
     plan_.status = result.status;
     if (!std::isfinite(result.value)) {
-      plan_.status = result.status == SolverStatus::kDeadline ? result.status
-                                                              : SolverStatus::kNumericalTrouble;
-      return;
+      if (result.status != SolverStatus::kDeadline) {
+        plan_.status = SolverStatus::kNumericalTrouble;
+      }
+      break;
     }
     z_ = result.z;
-    if (result.status == SolverStatus::kDeadline) return;
-    if (!lagrangian_.update(z_, kTolerance)) break;
+    if (result.status == SolverStatus::kDeadline || !lagrangian_.update(z_, kTolerance)) break;
     if (Clock::now() >= deadline) {
       plan_.status = SolverStatus::kDeadline;
-      return;
+      break;
     }
   }
   plan_.violation = violation_at(z_);
-  if (plan_.violation > 0.0) plan_.status = SolverStatus::kInfeasible;
+  const bool ended = plan_.status != SolverStatus::kDeadline &&
+                     plan_.status != SolverStatus::kNumericalTrouble;
+  if (ended && plan_.violation > 0.0) plan_.status = SolverStatus::kInfeasible;
 }
 
 const ChancePlan& ChancePlanner::plan(const Gaussian& belief, Eigen::Index period,
@@ -304,7 +306,7 @@ const ChancePlan& ChancePlanner::plan(const Gaussian& belief, PathDraw draw,
   };
   if (!fits(draw.start) || draw.noise.size() != draw_.noise.size() ||
       !std::all_of(draw.noise.begin(), draw.noise.end(), fits)) {
-    throw std::invalid_argument("chance constraint: the paths are not those that were asked for");
+    throw std::invalid_argument("chance constraint: the paths do not have the expected sizes");
   }
   draw_ = std::move(draw);
   progress_.reset();
@@ -336,9 +338,12 @@ const ChancePlan& ChancePlanner::make(const Gaussian& belief, Clock::time_point 
     best_ = z_;
     const double violation = plan_.violation;
     if (first_guess(belief, deadline)) search(belief, false, deadline);
-    if (plan_.status == SolverStatus::kInfeasible && !(plan_.violation < violation)) {
+    // The deadline may have ended it too early to be better.
+    if (!(plan_.violation < violation)) {
       z_ = best_;
       hold(belief);
+      plan_.violation = violation;
+      plan_.status = SolverStatus::kInfeasible;
     }
   }
   take_result(belief);
@@ -357,7 +362,7 @@ void ChancePlanner::move_on() {
   if (path_count_ > 0 && constraint_->per_stage() == path_count_) {
     lagrangian_.release();  // they belong to other paths
   } else {
-    lagrangian_.shift(constraint_->per_stage());
+    lagrangian_.shift({.count = constraints_->count(), .of_stage = constraint_->per_stage()});
   }
 }
 

@@ -99,8 +99,8 @@ ControllerEntry tube_controller() {
   return {
       .name = "tube",
       .summary =
-          "plans for the mean, away from the unsafe set by what feedback leaves of the "
-          "noise",
+          "plans for the mean, with a margin from the unsafe set for the noise that remains "
+          "under feedback",
       .parts = [](const ControllerSettings& settings) { return parts_of(tube_settings(settings)); },
       .make = [](const models::Dynamics& dynamics,
                  const ControllerSettings& settings) -> std::unique_ptr<Controller> {
@@ -110,7 +110,7 @@ ControllerEntry tube_controller() {
 }
 
 ControllerEntry cone_controller() {
-  return entry_of<kCone>("keeps a chance constraint for a Gaussian law");
+  return entry_of<kCone>("satisfies a chance constraint for a Gaussian law");
 }
 
 ControllerEntry cantelli_controller() {
@@ -118,7 +118,7 @@ ControllerEntry cantelli_controller() {
 }
 
 ControllerEntry scenario_controller() {
-  return entry_of<kScenario>("keeps every one of some sampled paths clear");
+  return entry_of<kScenario>("keeps every sampled path clear");
 }
 
 ControllerEntry cvar_controller() {

@@ -41,7 +41,7 @@ class TargetRegulator final : public Controller {
  public:
   TargetRegulator(const models::Dynamics& dynamics, const PlannerSettings& problem)
       : problem_(problem), rest_(resting_input(problem.bounds)), gain_(settled_gain(dynamics)) {
-    if (problem.path) throw std::invalid_argument("lqr: about the target it follows no path");
+    if (problem.path) throw std::invalid_argument("lqr: about the target it cannot follow a path");
     if (!gain_.allFinite()) {
       throw std::invalid_argument("lqr: the model has no finite linearisation at the target");
     }
@@ -284,7 +284,7 @@ DecisionParts lqr_parts(const ControllerSettings& settings) {
 
 ControllerEntry lqr_controller() {
   return {.name = "lqr",
-          .summary = "linear-quadratic regulator about the path or the target; knows no obstacles",
+          .summary = "linear-quadratic regulator about the path or the target; ignores obstacles",
           .parts = lqr_parts,
           .make = make_lqr};
 }

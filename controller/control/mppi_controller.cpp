@@ -16,7 +16,7 @@ std::unique_ptr<Controller> make_mppi(const models::Dynamics& dynamics,
 
 ControllerEntry mppi_controller() {
   return {.name = "mppi",
-          .summary = "mean of sampled input sequences, weighted by what their rollouts cost",
+          .summary = "mean of sampled input sequences, weighted by the costs of their rollouts",
           .parts = SamplingController::parts,
           .make = make_mppi,
           .samples = true};

@@ -150,7 +150,7 @@ class Adapter {
     } catch (const std::exception& exception) {
       put(exception.what(), error, size);
     } catch (...) {
-      put("an exception of unknown kind", error, size);
+      put("an unknown exception", error, size);
     }
     return 1;
   }
@@ -171,7 +171,7 @@ class Adapter {
     // row.
     std::copy_n(made.plan_inputs.data(), made.plan_inputs.size(), answer.plan_inputs);
     if (made.plan_gains.empty()) return;
-    require(std::ssize(made.plan_gains) == problem_.horizon(), "plan_gains are not horizon");
+    require(std::ssize(made.plan_gains) == problem_.horizon(), "plan_gains are not one per stage");
     double* out = answer.plan_gains;
     for (const RowMajor& gain : made.plan_gains) {
       require(gain.rows() == inputs && gain.cols() == problem_.state_dim(),

@@ -6,7 +6,7 @@ namespace qsmpc::controller {
 
 ControllerEntry quantised_controller() {
   return {.name = "quantised",
-          .summary = "plans on the quantised belief with the noise, open or closed loop",
+          .summary = "plans for the quantised belief with its noise, in open or closed loop",
           .parts = PlanningController::parts,
           .make = [](const models::Dynamics& dynamics,
                      const ControllerSettings& settings) -> std::unique_ptr<Controller> {

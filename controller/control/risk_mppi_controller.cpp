@@ -16,11 +16,12 @@ std::unique_ptr<Controller> make_risk_mppi(const models::Dynamics& dynamics,
 }  // namespace
 
 ControllerEntry risk_mppi_controller() {
-  return {.name = "risk_mppi",
-          .summary = "mppi on many noises at once: mean cost, and CVaR of being unsafe",
-          .parts = SamplingController::parts,
-          .make = make_risk_mppi,
-          .samples = true};
+  return {
+      .name = "risk_mppi",
+      .summary = "mppi with many realisations of the noise: mean cost, and CVaR of being unsafe",
+      .parts = SamplingController::parts,
+      .make = make_risk_mppi,
+      .samples = true};
 }
 
 }  // namespace qsmpc::controller

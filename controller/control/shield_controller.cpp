@@ -131,7 +131,7 @@ class Shield final : public Controller {
 
 void check_shielded(const ControllerSettings& settings) {
   if (settings.shield.of == kShield) {
-    throw std::invalid_argument("shield: it cannot be about another shield");
+    throw std::invalid_argument("shield: the shielded controller must not be a shield itself");
   }
   if (!(settings.shield.limit > 0.0 && settings.shield.limit <= 1.0)) {
     throw std::invalid_argument("shield: the limit must be above 0 and at most 1");
@@ -145,7 +145,7 @@ void check_shielded(const ControllerSettings& settings) {
 
 ControllerEntry shield_controller() {
   return {.name = kShield,
-          .summary = "overrules another controller that is certified above a limit",
+          .summary = "overrules another controller whose certified risk exceeds a limit",
           .parts = [](const ControllerSettings& settings) -> DecisionParts {
             check_shielded(settings);
             const DecisionParts inner = controller_entry(settings.shield.of).parts(settings);

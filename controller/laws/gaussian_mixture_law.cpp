@@ -165,7 +165,8 @@ class GaussianMixtureLaw final : public LawPropagator {
 
 LawMethod gaussian_mixture_law() {
   return {.name = "gaussian_mixture",
-          .summary = "A mixture, split where the model bends most, merged by Runnalls' algorithm",
+          .summary =
+              "A mixture, split where the model is most nonlinear, merged by Runnalls' algorithm",
           .make = [](const LawSettings& settings) {
             return std::make_unique<GaussianMixtureLaw>(settings);
           }};

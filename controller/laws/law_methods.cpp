@@ -20,13 +20,13 @@ void check_problem(const LawProblem& problem) {
   check_gaussian(problem.belief);
   check_gaussian({.mean = Eigen::VectorXd::Zero(dim), .covariance = problem.noise_covariance});
   if (problem.belief.mean.size() != dim) {
-    throw std::invalid_argument("law propagator: the belief must be of the state's dimension");
+    throw std::invalid_argument("law propagator: the belief must have the state's dimension");
   }
   const Policy& policy = problem.policy;
   if (policy.states.rows() != dim || policy.states.cols() < policy.horizon() ||
       policy.inputs.rows() != problem.dynamics.input_dim() ||
       static_cast<Eigen::Index>(policy.gains.size()) != policy.horizon()) {
-    throw std::invalid_argument("law propagator: the policy is not one of these dynamics");
+    throw std::invalid_argument("law propagator: the policy does not fit these dynamics");
   }
 }
 
@@ -76,7 +76,7 @@ const std::vector<LawMethod>& law_methods() {
 }
 
 const LawMethod& law_method(std::string_view name) {
-  return named_entry(law_methods(), name, "method of prediction");
+  return named_entry(law_methods(), name, "prediction method");
 }
 
 std::unique_ptr<LawPropagator> make_law_propagator(std::string_view name,

@@ -46,9 +46,10 @@ class LinearisedLaw final : public LawPropagator {
 }  // namespace
 
 LawMethod linearised_law() {
-  return {.name = "linearised",
-          .summary = "A Gaussian moved by the linearised model, as in the extended Kalman filter",
-          .make = [](const LawSettings&) { return std::make_unique<LinearisedLaw>(); }};
+  return {
+      .name = "linearised",
+      .summary = "A Gaussian propagated by the linearised model, as in the extended Kalman filter",
+      .make = [](const LawSettings&) { return std::make_unique<LinearisedLaw>(); }};
 }
 
 }  // namespace qsmpc::controller

@@ -93,7 +93,7 @@ class PolynomialChaosLaw final : public LawPropagator {
 
 LawMethod polynomial_chaos_law() {
   return {.name = "polynomial_chaos",
-          .summary = "A polynomial of standard normals, projected anew at every stage",
+          .summary = "A polynomial in standard normals, projected again at every stage",
           .make = [](const LawSettings& settings) {
             return std::make_unique<PolynomialChaosLaw>(settings);
           }};

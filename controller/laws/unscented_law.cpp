@@ -79,7 +79,7 @@ class UnscentedLaw final : public LawPropagator {
 LawMethod unscented_law() {
   return {
       .name = "unscented",
-      .summary = "A Gaussian moved by sigma points, with the scaled weights",
+      .summary = "A Gaussian propagated by sigma points, with the scaled weights",
       .make = [](const LawSettings& settings) { return std::make_unique<UnscentedLaw>(settings); }};
 }
 

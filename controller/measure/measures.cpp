@@ -36,7 +36,8 @@ void check_measure(const DiscreteMeasure& measure) {
     throw std::invalid_argument("discrete measure: no points");
   }
   if (measure.weights.size() != measure.size()) {
-    throw std::invalid_argument("discrete measure: as many weights as points are needed");
+    throw std::invalid_argument(
+        "discrete measure: the numbers of weights and points must be equal");
   }
   if (!measure.locations.allFinite() || !measure.weights.allFinite()) {
     throw std::invalid_argument("discrete measure: locations and weights must be finite");

@@ -97,6 +97,7 @@ void AssignmentRounds::optimise(PlanInProgress& plan) {
     risk->set_margin(2.0 * kRiskTolerance);
     if (!solver_entry(settings_.solver).takes_constraints) {
       aim_ = Aim::kAugmented;
+      if (plan.warm) lagrangian_.shift(risk->stage_rows());
       lagrangian_.start(*risk, evaluator_.evaluate_frozen(*plan.current), plan.warm);
     }
   }

@@ -14,7 +14,7 @@ void require_belief(bool holds, const char* message) {
 }  // namespace
 
 void BeliefQuantiser::quantise(const Gaussian& belief, GaussianQuantisation& out) {
-  require_belief(belief.mean.size() == dim_, "the mean must be of the state's dimension");
+  require_belief(belief.mean.size() == dim_, "the mean must have the state's dimension");
   require_belief(belief.mean.allFinite(), "the mean must be finite");
   require_belief(belief.covariance.rows() == dim_ && belief.covariance.cols() == dim_ &&
                      belief.covariance.allFinite(),

@@ -44,9 +44,9 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
                       [&](int index) { return index >= 0 && index < state_dim; }),
           "the target's angles must be indices of states");
   require(!settings.path || settings.path->path != nullptr, "there must be a path to follow");
-  require(!settings.path || !settings.guide, "a path and a guide exclude each other");
+  require(!settings.path || !settings.guide, "a path and a guide cannot be combined");
   require(!settings.waypoints || (!settings.path && !settings.guide),
-          "waypoints exclude a path and a guide");
+          "waypoints cannot be combined with a path or a guide");
   require(!settings.waypoints ||
               (settings.waypoints->states.rows() == state_dim && settings.waypoints->count() > 0 &&
                settings.waypoints->states.allFinite()),
@@ -54,7 +54,7 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
   require(settings.penalty.length > 0.0, "the penalty's length must be positive");
   require(settings.penalty.box >= 0.0 && settings.penalty.obstacle >= 0.0,
           "penalty weights must not be negative");
-  require(settings.safe_set.dim() == state_dim, "the safe set must be of the state's dimension");
+  require(settings.safe_set.dim() == state_dim, "the safe set must have the state's dimension");
   require(settings.bounds.lower.size() == input_dim && settings.bounds.upper.size() == input_dim &&
               settings.bounds.lower.allFinite() && settings.bounds.upper.allFinite() &&
               (settings.bounds.lower.array() < settings.bounds.upper.array()).all(),
@@ -65,9 +65,9 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
             "the feedback gain must be a finite matrix of inputs x states");
   }
   require(settings.risk.first >= 0.0 && settings.risk.stage >= 0.0 && settings.risk.plan >= 0.0,
-          "limits of the risk must not be negative");
+          "risk limits must not be negative");
   const double effort = settings.feedback_effort.value_or(1.0);
-  require(effort > 0.0 && std::isfinite(effort), "the effort of the feedback must be positive");
+  require(effort > 0.0 && std::isfinite(effort), "the feedback effort must be positive");
   require(settings.deadline > 0.0, "the deadline must be positive");
   require(settings.run != nullptr, "there must be an executor");
   check_safe_set(settings.safe_set);

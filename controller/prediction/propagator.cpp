@@ -182,16 +182,17 @@ StageMap Propagator::stage_map(const Points& stepped, const Eigen::VectorXd& wei
 
 const std::vector<PropagatorEntry>& propagators() {
   static const std::vector<PropagatorEntry> table = {
-      {"mixture", "the noise kept Gaussian, cut into cells with the points after every step; fast",
+      {"mixture",
+       "the noise stays Gaussian and is cut into cells with the points after every step; fast",
        make<MixturePropagator>},
       {"compressed", "product with the noise quantiser, compressed after every step (Eq. 4-5, 4-6)",
        make<CompressedPropagator>},
       {"moment_matched",
-       "the same with Lloyd's quantiser and refined compression, spread to the covariance due",
+       "the same with Lloyd's quantiser and refined compression, and the covariance restored",
        make<MomentMatchedPropagator>},
       {"soft", "as \"compressed\", but with the soft assignments of Algorithm 1; slow",
        make<SoftPropagator>},
-      {"noise_free", "the belief's points only; the noise counts as error of the certificate",
+      {"noise_free", "the belief's points only; the noise counts as error in the certificates",
        make<NoiseFreePropagator>, false},
   };
   return table;

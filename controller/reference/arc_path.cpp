@@ -52,7 +52,7 @@ void demand(bool holds, const char* expected) {
 ArcPath::ArcPath(const Eigen::Matrix2Xd& points, bool closed)
     : closed_(closed), count_(points.cols()) {
   demand(points.allFinite(), "path: finite points");
-  demand(count_ >= (closed ? 3 : 2), "path: at least 2 points, 3 where it is closed");
+  demand(count_ >= (closed ? 3 : 2), "path: at least 2 points, or 3 if it is closed");
   const Eigen::Index segments = closed ? count_ : count_ - 1;
   knots_.resize(static_cast<std::size_t>(segments) + 1);
   for (Eigen::Index i = 0; i <= segments; ++i) {
@@ -60,7 +60,7 @@ ArcPath::ArcPath(const Eigen::Matrix2Xd& points, bool closed)
     knot.position = points.col(i % count_);
     if (i == 0) continue;
     const double chord = (knot.position - knots_[i - 1].position).norm();
-    demand(chord > 0.0, "path: successive points that differ");
+    demand(chord > 0.0, "path: consecutive points that differ");
     knot.parameter = knots_[i - 1].parameter + chord;
   }
   bend(points);

@@ -43,7 +43,7 @@ void check_body(const Body& body, Eigen::Index dim) {
     }
     const bool placed = is_state(body.x) && is_state(body.y) && is_state(body.heading);
     if (!disc.offset.isZero(0.0) && !placed) {
-      throw std::invalid_argument("body: a disc off the position needs x, y and heading");
+      throw std::invalid_argument("body: a disc offset from the position needs x, y and heading");
     }
   }
 }
@@ -54,7 +54,7 @@ void check_safe_set(const SafeSet& safe_set) {
   for (const Obstacle& obstacle : safe_set.obstacles) {
     if (obstacle.motion) models::check_obstacle_motion(*obstacle.motion);
     if (const Box* box = obstacle.box()) {
-      if (obstacle.motion) throw std::invalid_argument("obstacle: only shapes of the plane move");
+      if (obstacle.motion) throw std::invalid_argument("obstacle: only planar shapes can move");
       check_box(*box, safe_set.dim(), "obstacle");
       continue;
     }
@@ -64,7 +64,7 @@ void check_safe_set(const SafeSet& safe_set) {
     }
   }
   if (safe_set.forecast && safe_set.forecast->size() != moving_obstacles(safe_set).size()) {
-    throw std::invalid_argument("safe set: a forecast of as many obstacles as move");
+    throw std::invalid_argument("safe set: the forecast must cover every moving obstacle");
   }
   if (safe_set.road && (!is_state(safe_set.body.x) || !is_state(safe_set.body.y))) {
     throw std::invalid_argument("safe set: a road needs a position in the plane");

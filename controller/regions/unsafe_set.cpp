@@ -62,8 +62,8 @@ DiscView view_of(const SafeSet& safe_set, const Disc& disc, bool first) {
 
 const std::vector<ShapeEntry>& region_shapes() {
   static const std::vector<ShapeEntry> table = {
-      {"walls", "everything outside of the intervals", make_walls},
-      {"box", "everything inside of the intervals", make_box},
+      {"walls", "everything outside the intervals", make_walls},
+      {"box", "everything inside the intervals", make_box},
   };
   return table;
 }

@@ -95,7 +95,7 @@ std::unique_ptr<controller::Controller> make_controller(const Scenario& scenario
     throw InputError({.key = "controller.kind",
                       .found = std::string(kObjectController) + ", " +
                                outside_controller_name(scenario.controller),
-                      .expected = "a controller that the program can make"});
+                      .expected = "a controller that the program can create"});
   }
   if (is_outside(scenario.controller)) {
     return std::make_unique<OutsideController>(scenario, dynamics);

@@ -49,7 +49,7 @@ double process_limit(int resource) {
 std::string size_words(const Scenario::Controller& controller) {
   if (is_sampling(controller)) return fmt::format("{} samples", controller.mppi.samples);
   const Scenario::Quantisation& points = controller.quantisation;
-  return fmt::format("{} points of the state, {} of the noise, {} compressed", points.state,
+  return fmt::format("{} state points, {} noise points, {} compressed points", points.state,
                      points.noise, points.compressed);
 }
 
@@ -85,9 +85,10 @@ std::optional<MemoryProblem> memory_problem(const Scenario& scenario, int count,
   if (need <= kMemoryShare * usable) return std::nullopt;
   const Scenario::Controller& controller = scenario.controller;
   return MemoryProblem{
-      .found = fmt::format("sizes that need about {:.2g} GB of memory: a horizon of {} with {}{}",
-                           need / kGiga, controller.horizon, size_words(controller),
-                           count > 1 ? fmt::format(", {} drives at the same time", count) : ""),
+      .found =
+          fmt::format("settings that need about {:.2g} GB of memory: a horizon of {} with {}{}",
+                      need / kGiga, controller.horizon, size_words(controller),
+                      count > 1 ? fmt::format(", {} drives in parallel", count) : ""),
       .expected = fmt::format("at most {:.2g} GB, {:.0f} % of the memory",
                               kMemoryShare * usable / kGiga, 100.0 * kMemoryShare)};
 }

@@ -16,7 +16,7 @@ constexpr std::string_view kComma = ", ";
 
 std::uint64_t seed_from_text(std::string_view text) {
   const auto seed = parse_integer<std::uint64_t>(text);
-  if (!seed) throw std::invalid_argument("seeds: no seed is \"" + std::string(text) + "\"");
+  if (!seed) throw std::invalid_argument("seeds: not a seed: \"" + std::string(text) + "\"");
   return *seed;
 }
 

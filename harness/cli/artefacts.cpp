@@ -64,10 +64,10 @@ std::string certificate_rows(const Summary& summary) {
                 fmt::format("{:.3g} at most", summary.horizon_max));
   }
   if (!holds) return rows + "  (no bound: " + summary.no_bound + ")\n";
-  return rows + (has_plan ? "  (both hold for the planner's model from its belief; the plant's "
-                            "mismatch is not in them)\n"
-                          : "  (it holds for the model from the observed state; the plant's "
-                            "mismatch is not in it)\n");
+  return rows + (has_plan ? "  (both hold for the planner's model from its belief; they do not "
+                            "cover the plant's mismatch)\n"
+                          : "  (it holds for the model from the observed state; it does not cover "
+                            "the plant's mismatch)\n");
 }
 
 /// A row for each limit that is set.
@@ -151,8 +151,7 @@ bool make_video(const EpisodeView& view, const VideoFiles& files,
     });
   } catch (const Interrupted&) {
     remove_file(partial_path_of(files.video));
-    std::cerr << fmt::format("qsmpc: interrupted: {} is left as it was\n",
-                             printable(files.video, 400));
+    std::cerr << fmt::format("qsmpc: interrupted: {} is unchanged\n", printable(files.video, 400));
     return false;
   } catch (const std::runtime_error& error) {
     throw IoError(error.what());
@@ -188,8 +187,8 @@ void write_page(const EpisodeView& view, const std::string& folder, bool with_vi
     options.video_from = video.from;
     options.video_speed = video.speed;
     options.video_note = fmt::format(
-        "{} frames were made at {:.0f} a second: drawing took {:.1f} ms and encoding {:.1f} ms a "
-        "frame; simulating the plant, {:.2f} ms a period.",
+        "{} frames were made at {:.0f} per second: drawing took {:.1f} ms and encoding {:.1f} ms "
+        "per frame; simulating the plant took {:.2f} ms per period.",
         video.frames, video.frames_per_second(), video.drawing_ms, video.encoding_ms,
         video.simulation_ms);
   }

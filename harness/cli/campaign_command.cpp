@@ -34,17 +34,18 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kCampaignHelp =
-    "Drives many episodes: scenarios, settings and plants with many seeds, on all cores; writes a\n"
+    "Runs many episodes: scenarios, settings and plants with many seeds, on all cores; writes a\n"
     "store (campaign.sqlite), statistics (campaign.json, CSV files), figures and a page "
     "(report.html).\n"
-    "Started again on the same folder, it goes on where it stopped.";
+    "Started again on the same folder, it resumes where it stopped.";
 constexpr const char* kCampaignExample =
     "Example: qsmpc campaign dubins_policies --out out/policies\n"
-    "How far it is, from another terminal: qsmpc campaign status out/policies\n"
+    "Its progress, from another terminal: qsmpc campaign status out/policies\n"
     "On two machines: qsmpc campaign dubins_policies --shard 1/2 --out out/one, --shard 2/2 on "
     "the\n"
     "other, then: qsmpc campaign merge out/one out/two --out out/policies\n"
-    "On many that share a folder: qsmpc campaign dubins_policies --on slurm --tasks 20 --out DIR";
+    "On a cluster with a shared folder:\n"
+    "         qsmpc campaign dubins_policies --on slurm --tasks 20 --out DIR";
 constexpr std::int64_t kMostShards = 1'000'000;
 
 struct CampaignArguments {
@@ -83,13 +84,14 @@ void check_launch(const CampaignArguments& arguments) {
   if (arguments.launch.on.empty()) {
     if (arguments.lease_seeds == 0 && arguments.launch == LaunchOptions{}) return;
     throw InputError({.key = "--on",
-                      .found = "nothing, and options of tasks",
+                      .found = "nothing, but options for tasks",
                       .expected = "local, ssh:HOSTS, ssh:@FILE or slurm"});
   }
   check_launch_options(arguments.launch);
   const auto refuse = [](const char* option, bool given) {
     if (!given) return;
-    throw InputError({.key = option, .found = "--on beside it", .expected = "one of the two"});
+    throw InputError(
+        {.key = option, .found = "it together with --on", .expected = "one of the two"});
   };
   refuse("--shard", !arguments.shard.empty());
   refuse("--update", arguments.options.update);
@@ -148,7 +150,8 @@ int campaign_command(CampaignArguments& arguments) {
   print_campaign_results(statistics, folder, arguments.json);
   if (end.done < end.total) {
     std::cerr << fmt::format(
-        "qsmpc: interrupted; {} of {} episodes are done and kept, and the same command goes on\n",
+        "qsmpc: interrupted; {} of {} episodes are done and kept; run the same command again to "
+        "resume\n",
         end.done, end.total);
     return kInterruptedExit;
   }
@@ -160,16 +163,17 @@ void add_tasks_options(CLI::App& command, CampaignArguments& arguments) {
   command.add_option(
       "--on", arguments.launch.on,
       "drive with tasks that share the output folder: local, ssh:HOSTS, ssh:@FILE or slurm");
-  command.add_option("--tasks", arguments.launch.tasks, "with --on: how many; default: 1")
+  command.add_option("--tasks", arguments.launch.tasks, "with --on: number of tasks; default: 1")
       ->check(CLI::Range(1, kMostTasks));
   command
       .add_option("--lease", arguments.lease_seeds,
-                  "with --on: seeds that a task takes at a time; default: by their number")
+                  "with --on: number of seeds a task takes at a time; default: depends on the "
+                  "number of seeds")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
   command
       .add_option("--lost-after", arguments.lost_after,
-                  "with --on: s without a sign of a task until others drive what it had begun; "
-                  "default: 120")
+                  "with --on: seconds without a sign of life from a task before others take over "
+                  "its work; default: 120")
       ->check(CLI::Range(std::int64_t{1}, kLongest));
   add_launch_options(command, arguments.launch);
 }
@@ -180,21 +184,21 @@ void add_campaign_options(CLI::App& command, CampaignArguments& arguments) {
                      "a campaign file, or the name of a shipped one");
   command
       .add_option("--jobs", options.jobs,
-                  "episodes at the same time; default: one a core; changes nothing but timings")
+                  "number of simultaneous episodes; default: one per core; affects only timings")
       ->check(CLI::Range(1, kMostAtOnce));
   command.add_option("--shard", arguments.shard,
-                     "I/N: only every N-th seed from the I-th on, for one of N machines");
+                     "I/N: only every N-th seed, starting with the I-th, for one of N machines");
   command.add_option("--out", arguments.out, "output folder; default: out/NAME-campaign");
-  command.add_flag("--dry-run", arguments.dry_run, "check it and show what would be driven");
+  command.add_flag("--dry-run", arguments.dry_run,
+                   "check the campaign and show what would be driven");
   command.add_flag("--update", options.update,
-                   "go on in the folder of a campaign that has changed: keep the episodes that "
-                   "both ask for, remove the others");
-  command.add_flag("--retry-faults", options.retry_faults,
-                   "drive the episodes again whose plant broke");
+                   "resume in the folder of a campaign that has changed: keep the episodes that "
+                   "both versions ask for, remove the others");
+  command.add_flag("--retry-faults", options.retry_faults, "drive the faulted episodes again");
   add_fail_on_option(command, arguments.fail_on,
                      {"collision", "left_bounds", kFailOnUnsafe, "timeout", "fault",
                       kFailOnRiskExceeded, kFailOnExceeded, "none"});
-  command.add_flag("--quiet", arguments.quiet, "no progress");
+  command.add_flag("--quiet", arguments.quiet, "no progress display");
   command.add_flag("--json", arguments.json, "print campaign.json instead of the table");
 }
 

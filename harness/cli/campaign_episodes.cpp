@@ -113,8 +113,8 @@ void compare_with_store(const EpisodeView& view, const EpisodeRow& stored) {
     return;
   }
   std::cerr << fmt::format(
-      "qsmpc: variant {}, seed {}: driven again by version {}, it is {} after {} steps; version {} "
-      "drove it in the campaign: {} after {} steps\n",
+      "qsmpc: variant {}, seed {}: driven again by version {}, it ends as {} after {} steps; in "
+      "the campaign, version {} ended as {} after {} steps\n",
       stored.variant + 1, stored.seed, now.version, now.outcome, now.steps, stored.version,
       stored.outcome, stored.steps);
 }
@@ -127,7 +127,7 @@ std::optional<Trace> drive_again(const StoredVariant& variant, const EpisodeRow&
     throw InputError({.file = folder + "/" + kStoreFile,
                       .key = "variant " + variant.name,
                       .found = "a vehicle that has changed since the campaign",
-                      .expected = "the vehicle that it drove"});
+                      .expected = "the vehicle that the campaign drove"});
   }
   Progress progress("driving", quiet);
   EpisodeOptions options;

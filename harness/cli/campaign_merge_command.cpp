@@ -38,14 +38,14 @@ int merge(const MergeArguments& arguments) {
 }  // namespace
 
 void add_campaign_merge_command(CLI::App& campaign, int& exit_code) {
-  CLI::App* command = campaign.add_subcommand(
-      "merge",
-      "Joins the shards of a campaign, once all are done, and checks that no episode is missing or "
-      "double.");
+  CLI::App* command = campaign.add_subcommand("merge",
+                                              "Joins the finished shards of a campaign and checks "
+                                              "that no episode is missing or duplicated.");
   command->footer("Example: qsmpc campaign merge out/one out/two --out out/policies");
   const auto arguments = std::make_shared<MergeArguments>();
   command->add_option("folders", arguments->folders, "folders of all shards")->required();
-  command->add_option("--out", arguments->out, "output folder, without a campaign yet")->required();
+  command->add_option("--out", arguments->out, "output folder, which must not hold a campaign yet")
+      ->required();
   command->add_flag("--json", arguments->json, "print campaign.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = merge(*arguments); });
 }

@@ -28,12 +28,12 @@ std::string store_folder(const std::string& folder) {
 
 void add_campaign_status_command(CLI::App& campaign, int& exit_code) {
   CLI::App* command = campaign.add_subcommand(
-      "status", "Tells how far a campaign is, while it runs or after; changes nothing.");
+      "status", "Shows the progress of a campaign, while it runs or afterwards; changes nothing.");
   command->footer("Example: qsmpc campaign status out/policies");
   const auto folder = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   command->add_option("folder", *folder, "folder of a campaign or contest")->required();
-  command->add_flag("--json", *json, "as JSON");
+  command->add_flag("--json", *json, "print JSON");
   command->callback([folder, json, &exit_code] {
     if (has_lease_plan(*folder)) {
       const ClusterStatus status = cluster_status(*folder);

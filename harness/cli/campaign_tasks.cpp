@@ -81,7 +81,7 @@ void tell_failures(const StartedTasks& started, const std::string& folder) {
   for (const TaskState& task : started.launcher->states(started.launch.record)) {
     if (task.condition != TaskCondition::kFailed && task.condition != TaskCondition::kLost)
       continue;
-    std::cerr << fmt::format("qsmpc: task {} {}{}{}; {} has what it said\n", task.task,
+    std::cerr << fmt::format("qsmpc: task {} {}{}{}; see its output in {}\n", task.task,
                              task_condition_name(task.condition),
                              task.where.empty() ? "" : " on " + printable(task.where),
                              task.note.empty() ? "" : ": " + printable(task.note, 400),
@@ -95,7 +95,7 @@ int gather_and_tell(const std::string& folder, const TasksTalk& talk, bool tasks
   GatherOptions options{.tasks_have_ended = tasks_have_ended};
   options.on_watch = [&](const std::string& tasks, double seconds) {
     if (talk.quiet) return;
-    std::cerr << fmt::format("qsmpc: looking for up to {} whether {} still work\n",
+    std::cerr << fmt::format("qsmpc: checking for up to {} whether {} still run\n",
                              duration_text(seconds), tasks);
   };
   options.sleep = [] {
@@ -107,8 +107,8 @@ int gather_and_tell(const std::string& folder, const TasksTalk& talk, bool tasks
   print_campaign_results(statistics, folder, talk.json);
   if (gathered.episodes < gathered.total) {
     std::cerr << fmt::format(
-        "qsmpc: {} of {} episodes are missing; what is done is kept, and qsmpc campaign resume {} "
-        "goes on\n",
+        "qsmpc: {} of {} episodes are missing; finished ones are kept, and qsmpc campaign resume "
+        "{} continues\n",
         gathered.total - gathered.episodes, gathered.total, printable(folder, 400));
     return kInterruptedExit;
   }
@@ -120,9 +120,10 @@ int drive_with_tasks(const std::string& folder, const TaskLaunch& request, const
   const StartedTasks started = start_tasks(folder, request, own_object_file());
   if (!started.launcher->stays()) {
     if (!talk.quiet) {
+      const int tasks = launch_tasks(launch_options_from_text(request.options));
       std::cerr << fmt::format(
-          "qsmpc: {} tasks are submitted; qsmpc campaign status, cancel and resume take {}\n",
-          launch_tasks(launch_options_from_text(request.options)), printable(folder, 400));
+          "qsmpc: {} task{} submitted; qsmpc campaign status, cancel and resume work on {}\n",
+          tasks, tasks == 1 ? "" : "s", printable(folder, 400));
     }
     return kDone;
   }
@@ -134,7 +135,7 @@ int drive_with_tasks(const std::string& folder, const TaskLaunch& request, const
 void refuse_unfinished_tasks(const std::string& folder) {
   if (!has_lease_plan(folder) || is_gathered(folder)) return;
   throw InputError({.file = folder,
-                    .found = "a campaign that tasks drive and have not finished",
+                    .found = "a campaign whose tasks have not finished",
                     .expected = "qsmpc campaign resume, or another folder"});
 }
 

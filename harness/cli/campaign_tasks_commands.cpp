@@ -39,25 +39,25 @@ int work(WorkArguments& arguments) {
   const WorkerEnd end = run_worker(plan, campaign, arguments.folder, arguments.options);
   std::cerr << fmt::format(
       "qsmpc: task {} drove {} episodes; {}\n", arguments.options.task, end.episodes,
-      end.all_finished ? "all are done" : "stopped, its leases are given back");
+      end.all_finished ? "all episodes are done" : "stopped, and its leases have been given back");
   return end.all_finished ? kDone : kInterruptedExit;
 }
 
 void add_work_command(CLI::App& campaign, int& exit_code) {
-  CLI::App* command = campaign.add_subcommand("work",
-                                              "One task of a campaign that several drive: what "
-                                              "--on starts. Started by hand, on any machine "
-                                              "that has the folder, it helps the others.");
+  CLI::App* command = campaign.add_subcommand(
+      "work",
+      "Runs one task of a campaign that several tasks drive; --on starts these. Started by hand, "
+      "on any machine that has the folder, it helps the others.");
   command->footer("Example: qsmpc campaign work out/policies --task 100");
   const auto arguments = std::make_shared<WorkArguments>();
   arguments->options.jobs = std::min(kMostAtOnce, available_threads());
-  command->add_option("folder", arguments->folder, "folder of a campaign that tasks drive")
+  command->add_option("folder", arguments->folder, "folder of a campaign started with --on")
       ->required();
-  command->add_option("--task", arguments->options.task, "its number")
+  command->add_option("--task", arguments->options.task, "number of the task")
       ->check(CLI::Range(1, 1'000'000'000));
   command
       ->add_option("--jobs", arguments->options.jobs,
-                   "episodes at the same time; default: one a core")
+                   "number of simultaneous episodes; default: one per core")
       ->check(CLI::Range(1, kMostAtOnce));
   command->callback([arguments, &exit_code] { exit_code = work(*arguments); });
 }
@@ -77,18 +77,18 @@ struct TasksArguments {
 /// Adds the options of a command that takes the folder and produces a campaign's results.
 std::shared_ptr<TasksArguments> add_tasks_options(CLI::App& command) {
   auto arguments = std::make_shared<TasksArguments>();
-  command.add_option("folder", arguments->folder, "folder of a campaign that tasks drive")
+  command.add_option("folder", arguments->folder, "folder of a campaign started with --on")
       ->required();
-  command.add_flag("--quiet", arguments->talk.quiet, "no progress");
+  command.add_flag("--quiet", arguments->talk.quiet, "no progress display");
   command.add_flag("--json", arguments->talk.json, "print campaign.json instead of the table");
   return arguments;
 }
 
 void add_gather_command(CLI::App& campaign, int& exit_code) {
-  CLI::App* command = campaign.add_subcommand(
-      "gather",
-      "Joins what the tasks of a campaign have driven and writes its results; those of what is "
-      "there, where episodes are missing.");
+  CLI::App* command =
+      campaign.add_subcommand("gather",
+                              "Joins the episodes that the tasks of a campaign have driven and "
+                              "writes the results so far, even if episodes are missing.");
   command->footer("Example: qsmpc campaign gather out/policies");
   const auto arguments = add_tasks_options(*command);
   command->callback([arguments, &exit_code] {
@@ -99,10 +99,10 @@ void add_gather_command(CLI::App& campaign, int& exit_code) {
 }
 
 void add_resume_command(CLI::App& campaign, int& exit_code) {
-  CLI::App* command = campaign.add_subcommand(
-      "resume",
-      "Starts tasks again for what is missing of a campaign, where and as they were "
-      "started last.");
+  CLI::App* command =
+      campaign.add_subcommand("resume",
+                              "Starts tasks again for the missing episodes of a campaign, with the "
+                              "same launcher and options as the last start.");
   command->footer("Example: qsmpc campaign resume out/policies");
   const auto arguments = add_tasks_options(*command);
   command->callback([arguments, &exit_code] {
@@ -111,7 +111,7 @@ void add_resume_command(CLI::App& campaign, int& exit_code) {
     const auto launch = read_task_launch(folder);
     if (!launch) {
       throw InputError({.file = folder,
-                        .found = "no tasks that were started",
+                        .found = "no record of started tasks",
                         .expected = "the folder of qsmpc campaign FILE --on …"});
     }
     exit_code = drive_with_tasks(folder, *launch, arguments->talk);
@@ -120,15 +120,15 @@ void add_resume_command(CLI::App& campaign, int& exit_code) {
 
 void add_cancel_command(CLI::App& campaign, int& exit_code) {
   CLI::App* command = campaign.add_subcommand(
-      "cancel", "Ends the tasks of a campaign; they keep what is done, and resume goes on.");
+      "cancel", "Stops the tasks of a campaign; finished episodes are kept, and resume continues.");
   command->footer("Example: qsmpc campaign cancel out/policies");
   const auto folder = std::make_shared<std::string>();
-  command->add_option("folder", *folder, "folder of a campaign that tasks drive")->required();
+  command->add_option("folder", *folder, "folder of a campaign started with --on")->required();
   command->callback([folder, &exit_code] {
     cancel_tasks(planned_folder(*folder));
     std::cerr << fmt::format(
-        "qsmpc: its tasks are told to end; qsmpc campaign status {0} shows when they have, and "
-        "qsmpc campaign resume {0} goes on\n",
+        "qsmpc: the tasks have been told to stop; qsmpc campaign status {0} shows when they have, "
+        "and qsmpc campaign resume {0} continues\n",
         printable(*folder, 400));
     exit_code = kDone;
   });

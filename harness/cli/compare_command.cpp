@@ -40,15 +40,14 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kCompareHelp =
-    "Measures how far plants are from the planner's model, in closed loop, in every period and "
-    "along\n"
-    "a plan, and what that does to the certificates; writes comparison.json, comparison.h5,\n"
-    "scenario.yaml, figures and a page (report.html).";
+    "Measures how far plants deviate from the planner's model, in closed loop, in every period\n"
+    "and along a plan, and how this affects the certificates; writes comparison.json,\n"
+    "comparison.h5, scenario.yaml, figures and a page (report.html).";
 constexpr const char* kCompareExample =
     "Example: qsmpc compare dubins_corridor --plant analytic --plant mujoco_car --episodes 50\n"
-    "A plant is \"analytic\", \"mujoco\" (the scenario's own vehicle), the name of a shipped one, "
-    "or the\n"
-    "path of an MJCF file. Without --plant: analytic, and the scenario's own if it is not that.";
+    "A plant is \"analytic\", \"mujoco\" (the scenario's own vehicle), the name of a shipped one,\n"
+    "or the path of an MJCF file. Without --plant: analytic, and the scenario's own if it is\n"
+    "another.";
 constexpr int kMostEpisodes = 100'000;
 constexpr std::int64_t kMostPaths = 100'000;  // all their states are kept
 
@@ -163,29 +162,29 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<CompareArguments>();
   ComparisonOptions& options = arguments->options;
   add_scenario_argument(*command, arguments->scenario);
-  command->add_option("--plant", options.plants, "NAME: a plant to compare, as often as wanted")
+  command->add_option("--plant", options.plants, "NAME: a plant to compare; may be repeated")
       ->allow_extra_args(false);
-  command->add_option("--episodes", options.episodes, "of each plant; default: 50")
+  command->add_option("--episodes", options.episodes, "episodes per plant; default: 50")
       ->check(CLI::Range(1, kMostEpisodes));
-  command->add_option("--paths", options.paths, "of each plant under one plan; default: 1000")
+  command->add_option("--paths", options.paths, "paths per plant under one plan; default: 1000")
       ->check(CLI::Range(std::int64_t{1}, kMostPaths));
   command
       ->add_option("--threads", options.threads,
-                   "that the work is divided among; default: all; changes no result")
+                   "number of threads; default: all cores; does not affect results")
       ->check(CLI::Range(1, kMostAtOnce));
   CLI::Option* error_file = command->add_option(
       "--write-model-error", arguments->error_file,
       "FILE (YAML): the measured model error, for the scenario's key model_error");
   command
       ->add_option("--model-error-plant", options.error_plant,
-                   "NAME: of which plant; default: the one named last")
+                   "NAME: the plant whose model error is written; default: the one named last")
       ->needs(error_file);
   add_set_option(*command, arguments->overrides);
   add_seed_option(*command, arguments->seed,
-                  "of the first episode and of the paths; default: the scenario's");
+                  "seed of the first episode and of the paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-compare");
   add_force_option(*command, arguments->force);
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--quiet", arguments->quiet, "no progress display");
   command->add_flag("--json", arguments->json, "print comparison.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = compare(*arguments); });
 }

@@ -110,7 +110,7 @@ _qsmpc_shipped() {
   qsmpc list "$1" 2>/dev/null | awk '/^  /{ print $1 }'
 }
 
-# _qsmpc_words 'WORDS' [-f|-d]: those that begin as what is typed, and files or folders.
+# _qsmpc_words 'WORDS' [-f|-d]: completes from WORDS, and from files or folders.
 _qsmpc_words() {
   mapfile -t COMPREPLY < <(compgen -W "$1" -- "$cur"; [ -z "$2" ] || compgen "$2" -- "$cur")
 }

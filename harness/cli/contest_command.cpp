@@ -27,15 +27,13 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kContestHelp =
-    "Lets controllers drive the same maps, plants, noise and seeds, each with settings that the "
-    "same\n"
-    "search chose on other seeds; writes a page (contest.html), contest.json, contest.csv, a "
-    "figure,\n"
-    "and what qsmpc campaign writes of the drives.\n"
-    "Started again on the same folder, it goes on where it stopped.";
+    "Compares controllers on the same maps, plants, noise and seeds, each with settings that the\n"
+    "same search chose on other seeds; writes a page (contest.html), contest.json, contest.csv, a\n"
+    "figure, and the files that qsmpc campaign writes for the drives.\n"
+    "Started again on the same folder, it resumes where it stopped.";
 constexpr const char* kContestExample =
     "Example: qsmpc contest rivals --out out/rivals\n"
-    "How far it is, from another terminal: qsmpc campaign status out/rivals";
+    "Its progress, from another terminal: qsmpc campaign status out/rivals";
 
 struct ContestArguments {
   std::string contest;
@@ -62,8 +60,8 @@ bool drive_part(const ContestPart& part, const ContestArguments& arguments) {
                      {.label = part.label, .quiet = arguments.quiet});
   if (end.done == end.total) return true;
   std::cerr << fmt::format(
-      "qsmpc: interrupted while {}; {} of {} drives are done and kept, and the same command goes "
-      "on\n",
+      "qsmpc: interrupted while {}; {} of {} drives are done and kept; run the same command again "
+      "to resume\n",
       part.label, end.done, end.total);
   return false;
 }
@@ -124,16 +122,17 @@ void add_contest_command(CLI::App& app, int& exit_code) {
   command->add_option("contest", arguments->contest, "a contest file, or the name of a shipped one")
       ->required();
   command
-      ->add_option("--jobs", arguments->jobs,
-                   "drives at the same time; default: one a core; drives that are timed are always "
-                   "alone")
+      ->add_option(
+          "--jobs", arguments->jobs,
+          "number of simultaneous drives; default: one per core; timed drives always run alone")
       ->check(CLI::Range(1, kMostAtOnce));
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-contest");
-  command->add_flag("--dry-run", arguments->dry_run, "check it and show what would be driven");
+  command->add_flag("--dry-run", arguments->dry_run,
+                    "check the contest and show what would be driven");
   command->add_flag("--update", arguments->update,
-                    "go on in the folder of a contest that has changed: keep the drives that both "
-                    "ask for, remove the others");
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+                    "resume in the folder of a contest that has changed: keep the drives that both "
+                    "versions ask for, remove the others");
+  command->add_flag("--quiet", arguments->quiet, "no progress display");
   command->add_flag("--json", arguments->json, "print contest.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = contest_command(*arguments); });
 }

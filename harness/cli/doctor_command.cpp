@@ -22,10 +22,9 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kDoctorHelp =
-    "Checks a MuJoCo vehicle and its mapping by driving them: sign, size and delay of each "
-    "state's\n"
-    "answer to each input, next to the planner's model, and gains with which they agree.\n"
-    "Exits with 1 where something is wrong.";
+    "Checks a MuJoCo vehicle and its mapping by driving them: compares sign, size and delay of\n"
+    "each state's response to each input with the planner's model, and finds gains with which\n"
+    "they agree. Exits with 1 if something is wrong.";
 
 struct DoctorArguments {
   std::string scenario;
@@ -65,7 +64,7 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   add_set_option(*command, arguments->overrides);
   command->add_option("--plant", arguments->plant,
                       "a shipped plant, or the path of an MJCF file; default: the scenario's");
-  command->add_flag("--json", arguments->json, "as JSON");
+  command->add_flag("--json", arguments->json, "print JSON");
   command->callback([arguments, &exit_code] { exit_code = doctor(*arguments); });
 }
 

@@ -31,12 +31,12 @@ int report_exception(const std::exception_ptr& exception) {
   } catch (const Interrupted& error) {
     return told(error.what(), kInterruptedExit);
   } catch (const std::bad_alloc&) {
-    return told("out of memory: fewer points, a shorter horizon or a smaller video need less",
+    return told("out of memory; use fewer points, a shorter horizon or a smaller video",
                 kIoTrouble);
   } catch (const std::exception& error) {
     return told("internal error: " + std::string(error.what()), kInternalError);
   } catch (...) {
-    return told("internal error of unknown kind", kInternalError);
+    return told("unknown internal error", kInternalError);
   }
 }
 

@@ -43,16 +43,16 @@ int export_episode(const ExportArguments& arguments) {
 }  // namespace
 
 void add_export_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand(
-      "export",
-      "Writes an episode as CSV: episode.csv, plan.csv, obstacles.csv where obstacles move, and, "
-      "if asked, particles.csv.");
+  CLI::App* command =
+      app.add_subcommand("export",
+                         "Writes an episode as CSV: episode.csv, plan.csv, obstacles.csv if "
+                         "obstacles move and, on request, particles.csv.");
   command->footer("Example: qsmpc export out/dubins_obstacles-0 --particles");
   const auto arguments = std::make_shared<ExportArguments>();
   command->add_option("folder", arguments->folder, "folder of an episode")->required();
   command->add_option("--out", arguments->out, "output folder; default: the episode's");
   command->add_flag("--particles", arguments->particles,
-                    "the particles of all stages of all plans, too: many lines");
+                    "also write the particles of all stages of all plans (many lines)");
   command->callback([arguments, &exit_code] { exit_code = export_episode(*arguments); });
 }
 

@@ -30,7 +30,7 @@ void add_help_command(CLI::App& app, int& exit_code) {
   const auto folder = std::make_shared<std::string>();
   command->add_option("command", *words, "the command; default: the program");
   command->add_option("--write-manual", *folder,
-                      "FOLDER: instead, writes the manual pages of all commands into it");
+                      "FOLDER: write the manual pages of all commands into it instead");
   command->callback([&app, words, folder, &exit_code] {
     if (folder->empty()) {
       print_result(help_of(app, *words));

@@ -20,9 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kInitHelp =
-    "Writes a commented scenario that drives, to begin with: NAME.yaml in the current folder, or "
-    "the\n"
-    "path NAME. Nothing that exists is replaced.";
+    "Writes a commented scenario, ready to run, as a starting point: NAME.yaml in the current\n"
+    "folder, or the path NAME. Never replaces an existing file.";
 
 int init(const std::string& name) {
   const bool is_file = name.ends_with(".yaml") || name.ends_with(".yml");
@@ -31,8 +30,7 @@ int init(const std::string& name) {
   (void)parse_scenario(text, {.file = path});  // throws if the name is invalid
   std::error_code error;
   if (fs::symlink_status(path, error).type() != fs::file_type::not_found) {
-    throw InputError(
-        {.file = path, .found = "a file that exists", .expected = "a name that is free"});
+    throw InputError({.file = path, .found = "an existing file", .expected = "an unused name"});
   }
   write_file(path, text);
   print_result(fmt::format("{0}\n  check  qsmpc validate {0}\n  drive  qsmpc run {0}\n", path));
@@ -45,7 +43,7 @@ void add_init_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("init", kInitHelp);
   command->footer("Example: qsmpc init my_car && qsmpc run my_car.yaml");
   const auto name = std::make_shared<std::string>("my_scenario");
-  command->add_option("name", *name, "of the scenario, or its file; default: my_scenario");
+  command->add_option("name", *name, "name of the scenario, or its file; default: my_scenario");
   command->callback([name, &exit_code] { exit_code = init(*name); });
 }
 

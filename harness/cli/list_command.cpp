@@ -112,7 +112,8 @@ int list(const std::string& kind, bool json) {
 }  // namespace
 
 void add_list_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("list", "Lists what can be named.");
+  CLI::App* command = app.add_subcommand(
+      "list", "Lists the available scenarios, plants, controllers and other names.");
   command->footer("Example: qsmpc list scenarios");
   const auto kind = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
@@ -124,7 +125,7 @@ void add_list_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"systems", "plants", "controllers", "estimators", "solvers",
                              "boundings", "propagators", "quantisers", "methods", "scenarios",
                              "campaigns", "contests"}));
-  command->add_flag("--json", *json, "as JSON");
+  command->add_flag("--json", *json, "print JSON");
   command->callback([kind, json, &exit_code] { exit_code = list(*kind, *json); });
 }
 

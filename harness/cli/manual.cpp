@@ -117,7 +117,7 @@ constexpr const char* kExitStatus =
     ".TP\n.B 0\ndone\n"
     ".TP\n.B 1\nran, and the outcome is one of \\-\\-fail\\-on\n"
     ".TP\n.B 2\nbad usage, or a bad file\n"
-    ".TP\n.B 3\ninput/output trouble\n"
+    ".TP\n.B 3\ninput/output error\n"
     ".TP\n.B 4\ninternal error\n"
     ".TP\n.B 130\ninterrupted; what was finished is kept\n";
 

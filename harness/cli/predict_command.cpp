@@ -42,9 +42,8 @@ constexpr const char* kPredictExample =
     "Examples: qsmpc predict dubins_corridor --steps 6 --monte-carlo 100000\n"
     "          qsmpc predict dubins_corridor --inputs my_inputs.csv --json\n"
     "          qsmpc predict dubins_prediction --methods unscented,mixture\n"
-    "FILE has one line a stage and one number an input, separated by commas; a first line may "
-    "name\n"
-    "the inputs. A certificate of stage k speaks of this plan followed for k stages.";
+    "FILE has one line per stage and one number per input, separated by commas; a first line may\n"
+    "name the inputs. A certificate of stage k applies to this plan followed for k stages.";
 // Most paths; the progress shows their numbers as 32-bit integers.
 constexpr std::int64_t kMostSamples = 1'000'000'000;
 /// Number of paths if methods are compared and --monte-carlo is not given.
@@ -183,14 +182,14 @@ void add_predict_command(CLI::App& app, int& exit_code) {
   add_scenario_argument(*command, arguments->scenario);
   add_set_option(*command, arguments->overrides);
   command->add_option("--inputs", arguments->inputs,
-                      "FILE (CSV): inputs to predict for; default: planned ones");
+                      "FILE (CSV): inputs to predict with; default: the planned ones");
   command
       ->add_option("--steps", arguments->steps,
-                   "stages; default: the rows of --inputs, or the scenario's horizon")
+                   "number of stages; default: the rows of --inputs, or the scenario's horizon")
       ->check(CLI::Range(1, kMostStages));
   command
       ->add_option("--monte-carlo", arguments->samples,
-                   "simulate so many paths of the model as a check of the certificates")
+                   "number of paths of the model to simulate as a check of the certificates")
       ->check(CLI::Range(std::int64_t{1}, kMostSamples));
   std::vector<std::string> names{kAllMethods};
   for (const controller::LawMethod& method : controller::law_methods()) {
@@ -200,22 +199,23 @@ void add_predict_command(CLI::App& app, int& exit_code) {
       command
           ->add_option("--methods", arguments->methods,
                        "compare these methods of prediction with simulated paths (1,000,000 unless "
-                       "--monte-carlo says how many), separated by commas, or all")
+                       "--monte-carlo sets another number), separated by commas, or all")
           ->delimiter(',')
           ->allow_extra_args(false)
           ->check(CLI::IsMember(names));
   command
       ->add_option("--at", arguments->at,
-                   "stages of which the table of methods is printed, separated by commas; default: "
-                   "the last")
+                   "stages for which the table of methods is printed, separated by commas; "
+                   "default: the last")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->needs(methods)
       ->check(CLI::Range(1, kMostStages));
-  add_seed_option(*command, arguments->seed, "of the simulated paths; default: the scenario's");
+  add_seed_option(*command, arguments->seed,
+                  "seed of the simulated paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-predict");
   add_force_option(*command, arguments->force);
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--quiet", arguments->quiet, "no progress display");
   command->add_flag("--json", arguments->json, "print predict.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = predict(*arguments); });
 }

@@ -17,12 +17,13 @@ namespace {
 int parse_and_run(int argc, char** argv) {
   CLI::App app("qsmpc: stochastic model predictive control by quantisation, on MuJoCo plants",
                "qsmpc");
-  app.set_version_flag("--version", versions, "Print the versions of program and libraries");
+  app.set_version_flag("--version", versions,
+                       "Print the versions of the program and its libraries");
   app.require_subcommand(1);
   app.footer(
       "Example: qsmpc run dubins_obstacles --seed 1 --out out/first\n"
       "Each command has --help. Exit codes: 0 done, 1 an outcome of --fail-on, 2 bad usage "
-      "or file,\n3 input/output trouble, 4 internal error, 130 interrupted.");
+      "or file,\n3 input/output error, 4 internal error, 130 interrupted.");
   int exit_code = kDone;
   add_init_command(app, exit_code);
   add_run_command(app, exit_code);

@@ -170,36 +170,35 @@ void add_video_options(CLI::App& command, RenderArguments& arguments) {
       .add_option("--camera", arguments.camera,
                   "chase, top, fixed, or split: chase and top side by side")
       ->check(CLI::IsMember(camera_names()));
-  command.add_option("--beside", arguments.beside,
-                     "folder of another episode, which is shown on the right");
-  command.add_option(
-      "--overlays", arguments.overlays,
-      "what is drawn over the scene, e.g. particles,tube; also all or none; default: "
-      "the scenario's");
+  command.add_option("--beside", arguments.beside, "folder of another episode, shown on the right");
+  command.add_option("--overlays", arguments.overlays,
+                     "overlays drawn over the scene, e.g. particles,tube, or all or none; default: "
+                     "the scenario's");
   command.add_option("--size", arguments.size,
                      "WIDTHxHEIGHT in pixels, both even; default: the scenario's, 640x360 for gif "
                      "and webp");
   command
       .add_option("--fps", arguments.fps,
-                  "frames a second; default: the scenario's, 12 for gif and webp")
+                  "frames per second; default: the scenario's, 12 for gif and webp")
       ->check(CLI::Range(1, 240));
   command
-      .add_option("--speed", video.speed, "seconds of the episode shown in a second; default: 1")
+      .add_option("--speed", video.speed, "seconds of the episode per second of video; default: 1")
       ->check(CLI::Range(0.1, 100.0));
   command
       .add_option("--quality", video.quality,
-                  "0, the smallest file, to 100, the best picture; default: 60")
+                  "from 0 (smallest file) to 100 (best picture); default: 60")
       ->check(CLI::Range(0, render::kBestQuality));
-  command.add_option("--from", video.from, "where the video begins, in seconds of the episode");
-  command.add_option("--to", video.to, "where it ends, in seconds of the episode");
-  command.add_option("--threads", video.threads, "that draw; default: 2")->check(CLI::Range(1, 64));
+  command.add_option("--from", video.from, "start of the video, in seconds of the episode");
+  command.add_option("--to", video.to, "end of the video, in seconds of the episode");
+  command.add_option("--threads", video.threads, "number of drawing threads; default: 2")
+      ->check(CLI::Range(1, 64));
 }
 
 }  // namespace
 
 void add_render_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("render", "Makes the video again, or a still picture, from the trace.");
+      app.add_subcommand("render", "Renders the video again, or a still picture, from the trace.");
   command->footer(
       "Examples: qsmpc render out/dubins_obstacles-0 --camera top --size 1920x1080\n"
       "          qsmpc render out/dubins_obstacles-0 --out drive.gif --speed 2");
@@ -213,7 +212,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember(render::video_format_names()));
   command
       ->add_option("--still", arguments->still,
-                   "one picture (PNG) of this second of the episode instead of a video")
+                   "write one picture (PNG) at this second of the episode instead of a video")
       ->excludes("--format")
       ->excludes("--from")
       ->excludes("--to")
@@ -222,10 +221,11 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->excludes("--fps");
   command
       ->add_option("--gl", arguments->gl,
-                   "what draws: osmesa, egl, or auto, the first of them that is installed")
+                   "OpenGL implementation: osmesa, egl, or auto, the first that is installed")
       ->check(CLI::IsMember(render::gl_names()));
-  command->add_flag("--verbose", arguments->verbose, "say what drew and how long it took");
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--verbose", arguments->verbose,
+                    "print the OpenGL implementation and the drawing times");
+  command->add_flag("--quiet", arguments->quiet, "no progress display");
   command->callback([arguments, &exit_code] { exit_code = render(*arguments); });
 }
 

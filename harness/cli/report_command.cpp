@@ -82,27 +82,27 @@ void add_report_command(CLI::App& app, int& exit_code) {
                                          "its numbers, tables and figures.");
   command->footer(
       "Example: qsmpc report out/dubins_obstacles-0 --figures\n"
-      "Of a campaign, with pages and videos: qsmpc report out/policies --worst 5");
+      "For a campaign, with pages and videos: qsmpc report out/policies --worst 5");
   const auto arguments = std::make_shared<ReportArguments>();
   command
       ->add_option("folder", arguments->folder, "folder of an episode, a comparison or a campaign")
       ->required();
   CLI::Option* figures =
       command->add_flag("--figures", arguments->figures,
-                        "write the charts as SVG and PDF files, too: FOLDER/figures");
+                        "also write the charts as SVG and PDF files to FOLDER/figures");
   command
       ->add_option("--columns", arguments->style.columns,
-                   "with --figures: as wide as 1 or 2 columns of a paper (3.5 or 7.16 inches)")
+                   "with --figures: width in columns of a paper, 1 or 2 (3.5 or 7.16 inches)")
       ->needs(figures)
       ->check(CLI::Range(1, 2));
-  command->add_flag("--titles", arguments->style.titles, "with --figures: with titles and notes")
+  command->add_flag("--titles", arguments->style.titles, "with --figures: include titles and notes")
       ->needs(figures);
   command
       ->add_option("--worst", arguments->worst,
-                   "N: of a campaign, page and video of its N worst episodes, driven again where "
-                   "their trace is not kept")
+                   "N: also make page and video of a campaign's N worst episodes, driven again if "
+                   "their trace was not kept")
       ->check(CLI::Range(std::size_t{1}, kMostWorst));
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--quiet", arguments->quiet, "no progress display");
   command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
 }
 

@@ -23,8 +23,8 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kReproduceHelp =
-    "Does the reference thesis's experiments again and lays each number beside the published one;\n"
-    "writes results.json, results.md, results.html and the figures, after every experiment anew.";
+    "Repeats the reference thesis's experiments and compares each number with the published one;\n"
+    "writes results.json, results.md, results.html and the figures, updated after each experiment.";
 constexpr int kMostSeeds = 100'000;
 
 struct ReproduceArguments {
@@ -37,8 +37,8 @@ struct ReproduceArguments {
 
 std::string example() {
   std::string text =
-      "Example: qsmpc reproduce table-5-2 figure-4-1 --seeds 20\nWithout NAME, or with \"all\": "
-      "all of them, some minutes. The experiments:\n";
+      "Example: qsmpc reproduce table-5-2 figure-4-1 --seeds 20\n"
+      "Without NAME, or with \"all\": all of them (takes some minutes). The experiments:\n";
   for (const ExperimentEntry& entry : experiments()) {
     text += fmt::format("  {:<12} {}\n", entry.name, entry.title);
   }
@@ -100,18 +100,17 @@ void add_reproduce_command(CLI::App& app, int& exit_code) {
                    fmt::format("drives of each kind; default: {}", options.seeds))
       ->check(CLI::Range(1, kMostSeeds));
   command
-      ->add_option(
-          "--arrival-seeds", options.arrival_seeds,
-          fmt::format("drives of each kind on its model in \"plants\", where only the share that "
-                      "arrives is counted; default: {}",
-                      options.arrival_seeds))
+      ->add_option("--arrival-seeds", options.arrival_seeds,
+                   fmt::format("drives of each kind on its model in \"plants\", which only counts "
+                               "the share that arrives; default: {}",
+                               options.arrival_seeds))
       ->check(CLI::Range(1, kMostSeeds));
   command
       ->add_option("--threads", options.threads,
-                   "that the work is divided among; default: all; changes nothing but timings")
+                   "number of threads; default: all cores; affects only timings")
       ->check(CLI::Range(1, kMostAtOnce));
   command->add_option("--out", arguments->out, "output folder; default: out/reproduce");
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--quiet", arguments->quiet, "no progress display");
   command->add_flag("--json", arguments->json, "print results.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = reproduce_command(*arguments); });
 }

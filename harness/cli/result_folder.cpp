@@ -65,7 +65,7 @@ bool is_there(const std::string& path) {
 
 void add_force_option(CLI::App& command, bool& force) {
   command.add_flag("--force", force,
-                   "replace what the output folder holds, also of another scenario");
+                   "replace results in the output folder, even those of another scenario");
 }
 
 std::string scenario_difference(const std::string& there, const std::string& here) {
@@ -98,7 +98,7 @@ void refuse_other_result(const std::string& folder, const Scenario& scenario, bo
   try {
     difference = scenario_difference(read_text_file(file), to_yaml(scenario));
   } catch (const InputError&) {
-    refuse(folder, std::string("a ") + kScenarioFile + " that is no resolved scenario");
+    refuse(folder, std::string("a ") + kScenarioFile + " that is not a resolved scenario");
   }
   if (!difference.empty()) refuse(folder, "the result of another scenario: " + difference);
 }

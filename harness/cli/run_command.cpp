@@ -112,7 +112,7 @@ int run(const RunArguments& arguments) {
   write_controller_log(trace, folder);
   if (trace.outcome == Outcome::kFault) {
     const bool is_plant = trace.fault_of == FaultOf::kPlant;
-    std::cerr << (is_plant ? "qsmpc: the plant broke: " : "qsmpc: the controller failed: ")
+    std::cerr << (is_plant ? "qsmpc: the plant failed: " : "qsmpc: the controller failed: ")
               << printable(trace.fault, 1000) << '\n';
   }
   // An episode that ended before it began, e.g. because its plant's file is broken, has nothing to
@@ -143,10 +143,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<RunArguments>();
   add_scenario_argument(*command, arguments->scenario);
   add_set_option(*command, arguments->overrides);
-  add_seed_option(*command, arguments->seed, "of all random numbers; default: the scenario's");
-  command->add_option("--out", arguments->out,
-                      "output folder; default: out/NAME-SEED, with --set and digits that belong "
-                      "to the settings");
+  add_seed_option(*command, arguments->seed, "seed of all random numbers; default: the scenario's");
+  command->add_option(
+      "--out", arguments->out,
+      "output folder; default: out/NAME-SEED, and with --set a hash of the settings after it");
   add_force_option(*command, arguments->force);
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
   // Interrupts are not listed: they have a separate exit code.
@@ -155,11 +155,11 @@ void add_run_command(CLI::App& app, int& exit_code) {
                       kFailOnRiskExceeded, "none"});
   command
       ->add_option("--gl", arguments->gl,
-                   "what draws the video: osmesa, egl, or auto, the first that is installed")
+                   "OpenGL implementation: osmesa, egl, or auto, the first that is installed")
       ->check(CLI::IsMember(render::gl_names()));
   command->add_flag("--verbose", arguments->verbose,
-                    "say what drew the video and how long it took");
-  command->add_flag("--quiet", arguments->quiet, "no progress");
+                    "print the OpenGL implementation and the drawing times");
+  command->add_flag("--quiet", arguments->quiet, "no progress display");
   command->add_flag("--json", arguments->json, "print summary.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -19,7 +19,7 @@ void add_scenario_argument(CLI::App& command, std::string& scenario) {
 }
 
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
-  command.add_option("--set", overrides, "KEY=VALUE: replaces a key of the scenario")
+  command.add_option("--set", overrides, "KEY=VALUE: set a key of the scenario")
       ->allow_extra_args(false);
 }
 
@@ -50,7 +50,7 @@ void refuse_motion(const Scenario& scenario, const std::string& path_or_name,
   InputError::Where where = place_of_key(path_or_name, overrides, "safe_set.obstacles");
   where.key = "safe_set.obstacles";
   where.found = "an obstacle with a motion";
-  where.expected = fmt::format("obstacles that stand, for {}", command);
+  where.expected = fmt::format("static obstacles, for {}", command);
   throw InputError(where);
 }
 
@@ -64,8 +64,8 @@ void settle_points(Scenario& scenario, bool quiet) {
     return;
   }
   std::cerr << fmt::format(
-      "qsmpc: {} of {} points for the belief, {} of {} kept; "
-      "they mislead none of {} plans tried by more than {:.2g} % of its cost\n",
+      "qsmpc: {} of {} points for the belief, {} of {} kept; in {} trial plans they mislead by at "
+      "most {:.2g} % of a plan's cost\n",
       choice->state_points, asked.state, choice->compressed_points, asked.compressed,
       choice->places, 100.0 * std::max(choice->gap, 0.0));
 }

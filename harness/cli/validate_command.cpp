@@ -147,7 +147,7 @@ void add_validate_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("files", *files, "scenario, campaign or contest files, or names of shipped ones")
       ->required();
-  command->add_flag("--json", *json, "as JSON");
+  command->add_flag("--json", *json, "print JSON");
   command->callback([files, json, &exit_code] { exit_code = validate(*files, *json); });
 }
 

@@ -62,9 +62,9 @@ void refuse_working(const std::string& folder, const std::vector<TaskReport>& re
   }
   const auto working = found_working(folder, suspects, launch.lost_after, options.sleep);
   if (working.empty()) return;
-  throw IoError(printable(folder, 400) + ": " + names_of(working) +
-                (working.size() == 1 ? " is" : " are") +
-                " at work; gather once they have ended, or end them with qsmpc campaign cancel");
+  throw IoError(
+      printable(folder, 400) + ": " + names_of(working) + (working.size() == 1 ? " is" : " are") +
+      " still running; gather after the end of all tasks, or stop them with qsmpc campaign cancel");
 }
 
 /// A folder of copied stores, removed on destruction.
@@ -134,7 +134,7 @@ Gathered gather_tasks(const std::string& folder, const GatherOptions& options) {
   if (has_store) {
     const StoreReader store(folder);
     refuse_other_campaign(folder, {store.campaign(), store.variants()}, plan.identity,
-                          ", as its plan of tasks says");
+                          ", according to its task plan");
     const std::int64_t total = store.campaign().episodes;
     if (done_of(store) == total) return {.episodes = total, .total = total};
   }
@@ -152,8 +152,8 @@ Gathered gather_tasks(const std::string& folder, const GatherOptions& options) {
   }
   if (stores.empty()) {
     throw InputError({.file = folder,
-                      .found = "no task that has begun",
-                      .expected = "tasks that were at work; qsmpc campaign resume starts some"});
+                      .found = "no task that has started",
+                      .expected = "tasks that have run; qsmpc campaign resume starts some"});
   }
   const MergeResult merged =
       merge_stores(stores, folder, {.duplicates = true, .incomplete = true, .replace = true});

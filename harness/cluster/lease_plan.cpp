@@ -194,21 +194,21 @@ LeasePlan read_lease_plan(const std::string& folder) {
   const std::optional<std::string> text = read_shared_file(path);
   if (!text) {
     throw InputError({.file = path,
-                      .found = "no plan of tasks",
+                      .found = "no task plan",
                       .expected = "the folder that qsmpc campaign FILE --on … writes"});
   }
   try {
     const Json json = Json::parse(*text);
     if (json.at("format") != kPlanFormat) {
       throw InputError({.file = path,
-                        .found = "a plan of format " + json.at("format").dump(),
+                        .found = "a task plan of format " + json.at("format").dump(),
                         .expected = fmt::format("format {}", kPlanFormat)});
     }
     return plan_of(json);
   } catch (const Json::exception& error) {
-    throw InputError({.file = path, .found = error.what(), .expected = "a plan of tasks"});
+    throw InputError({.file = path, .found = error.what(), .expected = "a task plan"});
   } catch (const std::invalid_argument& error) {
-    throw InputError({.file = path, .found = error.what(), .expected = "a plan of tasks"});
+    throw InputError({.file = path, .found = error.what(), .expected = "a task plan"});
   }
 }
 

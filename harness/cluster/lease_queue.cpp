@@ -106,7 +106,7 @@ std::set<std::int64_t> finished_leases(const std::string& folder) {
 std::vector<SeedOutcomes> finished_outcomes(const std::string& folder, std::int64_t lease) {
   const std::string path = finished_path(folder, lease);
   const std::optional<std::string> text = read_shared_file(path);
-  if (!text) throw IoError(path + ": is gone");
+  if (!text) throw IoError(path + ": has disappeared");
   try {
     std::vector<SeedOutcomes> seeds;
     const Json json = Json::parse(*text);

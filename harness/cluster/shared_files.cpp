@@ -108,7 +108,7 @@ void overwrite_shared_file(const std::string& path, const std::string& text) {
 
 bool create_shared_folder(const std::string& path) {
   if (::mkdir(path.c_str(), kSharedFolderMode) != 0) {
-    if (errno != EEXIST) fail_shared(path, "made a folder", errno);
+    if (errno != EEXIST) fail_shared(path, "created as a folder", errno);
     return false;
   }
   const std::string parent = std::filesystem::path(path).parent_path().string();

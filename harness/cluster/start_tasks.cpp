@@ -42,8 +42,8 @@ void refuse_working_tasks(const std::string& folder, const TaskLaunch& launch) {
   const std::ptrdiff_t count = count_unended(*launcher, launch);
   if (count == 0 || (launcher->stays() && !any_gives_signs(folder, launch))) return;
   throw IoError(
-      fmt::format("{}: {} of its tasks {} waiting or at work; qsmpc campaign status and "
-                  "cancel take this folder",
+      fmt::format("{}: {} of its tasks {} waiting or running; use qsmpc campaign status or cancel "
+                  "on this folder",
                   printable(folder, 400), count, count == 1 ? "is" : "are"));
 }
 
@@ -57,8 +57,8 @@ void plan_tasks(const Campaign& campaign, const std::string& folder, std::int64_
     if (std::filesystem::exists(folder + "/" + kStoreFile, ignored)) {
       throw InputError({.file = folder,
                         .key = "--on",
-                        .found = "the campaign of one process",
-                        .expected = "another folder; this one goes on without --on"});
+                        .found = "a campaign of one process",
+                        .expected = "another folder; this one resumes without --on"});
     }
     const std::int64_t size =
         lease_seeds > 0 ? lease_seeds : default_lease_seeds(campaign.seeds.size(), at_once);
@@ -67,12 +67,12 @@ void plan_tasks(const Campaign& campaign, const std::string& folder, std::int64_
   }
   const LeasePlan plan = read_lease_plan(folder);
   const LeasePlan asked = lease_plan(campaign, plan.lease_seeds);
-  refuse_other_campaign(path, plan.identity, asked.identity, "; take another folder");
+  refuse_other_campaign(path, plan.identity, asked.identity, "; use another folder");
   if (lease_seeds > 0 && lease_seeds != plan.lease_seeds) {
     throw InputError({.file = path,
                       .key = "--lease",
                       .found = fmt::format("leases of {} seeds", plan.lease_seeds),
-                      .expected = fmt::format("{}; take another folder", lease_seeds)});
+                      .expected = fmt::format("{}; use another folder", lease_seeds)});
   }
 }
 
@@ -104,7 +104,7 @@ void cancel_tasks(const std::string& folder) {
   const std::optional<TaskLaunch> launch = read_task_launch(folder);
   if (!launch || launch->record.empty()) {
     throw InputError({.file = folder,
-                      .found = "no tasks that were started",
+                      .found = "no record of started tasks",
                       .expected = "the folder of qsmpc campaign FILE --on …"});
   }
   launcher_of(launch->record)->cancel(launch->record);

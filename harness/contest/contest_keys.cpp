@@ -77,7 +77,7 @@ std::vector<KeyDescription> drives_of_contest() {
            .values = {list_of_values(NumberValue{{.least = 0.0, .most = kLargestNoise}},
                                      {.least = 1, .most = kMostNoiseLevels, .once = true})},
            .words = fmt::format("list of factors of the scenario's `disturbance.covariance`, from "
-                                "0 to {:g}; the controllers are told the scaled one",
+                                "0 to {:g}; the controllers receive the scaled one",
                                 kLargestNoise),
            .fallback = "[1]"},
           {.name = "seeds",
@@ -96,29 +96,27 @@ std::vector<KeyDescription> tuning_of_contest() {
   const MappingValue tuning{
       {{.name = "seeds",
         .values = seed_values(),
-        .words = "as `seeds`, without any of them",
+        .words = "like `seeds`, but without any of them",
         .required = true},
        {.name = "search",
         .values = {MappingValue{{search}}},
         .words = "mapping of a controller's NAME to `{KEY: [VALUES]}`: all combinations are its "
-                 "candidates; a controller without one drives as it is",
+                 "candidates; a controller that is not named drives with its settings as they are",
         .required = true},
        {.name = "budget",
         .values = {WholeValue{1, kLargestBudget}},
-        .words =
-            "candidates of each controller that are tried, {range}; of more, the first so many "
-            "in a fixed random order",
+        .words = "number of candidates tried per controller, {range}; if there are more, the first "
+                 "ones in a fixed random order",
         .required = true}}};
-  const MappingValue timing{
-      {{.name = "seeds",
-        .values = {WholeValue{1, kMostTimingSeeds}},
-        .words = "how many of the first seeds are driven once more, one drive "
-                 "at a time, for the times, {range}",
-        .fallback = fmt::format("{}", kTimingSeeds)}}};
+  const MappingValue timing{{{.name = "seeds",
+                              .values = {WholeValue{1, kMostTimingSeeds}},
+                              .words = "number of first seeds, {range}, that are driven once more, "
+                                       "one drive at a time, to measure the times",
+                              .fallback = fmt::format("{}", kTimingSeeds)}}};
   return {{.name = "tuning",
            .values = {tuning},
            .words = "the search for each controller's settings: a mapping of the keys below",
-           .fallback_words = "none: they drive as they are"},
+           .fallback_words = "none: they drive with their settings as they are"},
           {.name = "timing",
            .values = {timing},
            .words = "a mapping of the key below",
@@ -153,7 +151,8 @@ std::vector<DocumentTable> contest_tables() {
 std::string why_shared(const std::string& key) {
   const bool is_own =
       (is_key_within(key, "controller") && key != "controller") || is_key_within(key, "risk");
-  if (!is_own) return "keys within controller or risk; what is the same for all is in common";
+  if (!is_own)
+    return "keys within controller or risk; settings of all controllers belong in common";
   const bool is_shared = std::ranges::any_of(
       kSharedKeys, [&](const char* shared) { return is_key_within(key, shared); });
   return is_shared ? "the same for all controllers, in common" : "";

@@ -180,7 +180,7 @@ void ContestReader::read_scenarios() {
   if (const YamlNode* node = root_.tree("scenarios")) {
     contest_.scenarios = read_choices(*node, "scenarios", problems_);
   } else {
-    root_.require("scenarios", "a list of shipped scenarios, or paths of some");
+    root_.require("scenarios", "a list of names of shipped scenarios, or paths");
   }
 }
 

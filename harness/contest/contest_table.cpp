@@ -82,9 +82,11 @@ std::string contest_table(const ContestResults& results) {
     text += indented(printable(contest.controllers[n].name, 60) + ": " + words_about(results, n));
   }
   return text +
-         "\n  Shares of drives in %. believed, certified: sums over a drive. cost: of the "
-         "drives that arrive, against\n  the reference's on the same seeds. ms: planning and "
-         "certifying, one drive at a time.\n";
+         "\n"
+         "  Shares of drives in %. believed, certified: sums over a drive. cost: of the drives "
+         "that arrive, relative to\n"
+         "  the reference's on the same seeds. ms: planning and certifying, one drive at a "
+         "time.\n";
 }
 
 }  // namespace qsmpc::harness

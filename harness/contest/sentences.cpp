@@ -32,7 +32,8 @@ std::string safety_words(const ContestResults& results, std::size_t controller) 
   const std::size_t reference = results.contest.reference;
   const Standing& own = results.overall[controller];
   const std::string other = name_of_controller(results, reference);
-  std::string how = fmt::format("Not told apart from {} in safety by these drives", other);
+  std::string how =
+      fmt::format("No significant difference in safety from {} in these drives", other);
   if (own.versus->safety() == MatchResult::kWin) how = "Safer than " + other;
   if (own.versus->safety() == MatchResult::kLoss) how = "Less safe than " + other;
   return fmt::format("{}: {} of its drives unsafe against {} ({})", how, percent(own.unsafe.rate),
@@ -56,8 +57,8 @@ std::string economy_words(const Versus& versus) {
   const MatchResult economy = versus.economy();
   return fmt::format("; where both arrive, {} ({})",
                      economy == MatchResult::kWin    ? "cheaper"
-                     : economy == MatchResult::kLoss ? "dearer"
-                                                     : "no different in cost",
+                     : economy == MatchResult::kLoss ? "more expensive"
+                                                     : "no significant difference in cost",
                      cost_words(cost));
 }
 
@@ -67,10 +68,10 @@ std::string belief_words(const Standing& standing) {
   const double believed = standing.believed.mean;
   const bool is_sure = believed < standing.unsafe.interval.lower;
   const bool is_timid = believed > standing.unsafe.interval.upper;
-  return fmt::format("{} (believed in {} unsafe periods a drive)",
-                     is_sure    ? "too sure of itself"
-                     : is_timid ? "expects more than happens"
-                                : "knows its risk as far as these drives tell",
+  return fmt::format("{} (expected {} unsafe periods per drive)",
+                     is_sure    ? "underestimates its risk"
+                     : is_timid ? "overestimates its risk"
+                                : "estimates its risk correctly as far as these drives show",
                      format_short(believed, 2));
 }
 
@@ -129,7 +130,7 @@ std::string words_about(const ContestResults& results, std::size_t controller) {
   const Standing& standing = results.overall[controller];
   if (standing.drives == 0) return "No drive is done.";
   if (!standing.versus) return reference_words(standing);
-  if (standing.versus->unsafe.pairs == 0) return "No drive has the reference's beside it yet.";
+  if (standing.versus->unsafe.pairs == 0) return "No drive can be compared with the reference yet.";
   return safety_words(results, controller) + arrival_words(results, controller) +
          economy_words(*standing.versus) + "; " + belief_words(standing) + "." +
          cell_words(results, controller);

@@ -32,9 +32,8 @@ struct TuningResult {
 /// The criterion in words.
 inline constexpr const char* kTuningCriterion =
     "fewest drives that were unsafe or did not reach the target, then the lowest mean cost of "
-    "those "
-    "that did, each scenario, plant and noise in units of the mean over the controller's "
-    "candidates";
+    "those that did, relative, for each scenario, plant and noise level, to the mean over the "
+    "controller's candidates";
 
 /// The best of `tried` by the criterion, the first of equal ones. `tried` has at least one.
 [[nodiscard]] std::size_t best_candidate(const std::vector<TriedCandidate>& tried);

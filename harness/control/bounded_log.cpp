@@ -25,7 +25,7 @@ void BoundedLog::clear() {
 
 std::string BoundedLog::text() const {
   if (left_out_ == 0) return begin_ + end_;
-  return fmt::format("{}\n[… {} bytes are left out …]\n{}", begin_, left_out_, end_);
+  return fmt::format("{}\n[… {} bytes omitted …]\n{}", begin_, left_out_, end_);
 }
 
 std::string BoundedLog::last_line() const {

@@ -114,14 +114,14 @@ void read_some(Descriptor& from, const Take& take) {
 std::string end_words(const ChildEnd& end) {
   switch (end.how) {
     case ChildEnd::kExit:
-      return fmt::format("its end with exit code {}", end.value);
+      return fmt::format("an exit with code {}", end.value);
     case ChildEnd::kSignal: {
       const char* const name = ::sigdescr_np(end.value);
-      return fmt::format("its end by signal {} ({})", end.value,
+      return fmt::format("termination by signal {} ({})", end.value,
                          name == nullptr ? "unknown" : name);
     }
     case ChildEnd::kNoStart:
-      return fmt::format("no process: {}", std::strerror(end.value));
+      return fmt::format("a process that cannot be started: {}", std::strerror(end.value));
   }
   return {};
 }
@@ -193,8 +193,8 @@ std::optional<std::string> ChildProcess::take_line() {
 
 void ChildProcess::check_alive() const {
   if (end_) throw ChildFailure(end_words(*end_));
-  if (!leash_.is_open()) throw ChildFailure("the end of the process that watches over it");
-  if (!output_.is_open()) throw ChildFailure("the end of its standard output");
+  if (!leash_.is_open()) throw ChildFailure("the end of its supervisor process");
+  if (!output_.is_open()) throw ChildFailure("its standard output closed");
 }
 
 void ChildProcess::turn(Clock::time_point until) {

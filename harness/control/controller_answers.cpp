@@ -158,7 +158,7 @@ ControllerAnswer read_answer(const std::string& line, std::int64_t period,
   const std::string expected = plans ? "{\"plan\": {\"inputs\": [[…], …]}}" : "{\"input\": […]}";
   const AnswerJson json = object_in(line, expected);
   if (const auto of = json.find("period"); of != json.end() && *of != period) {
-    refuse("an answer to period " + shown(*of), fmt::format("one to period {}", period));
+    refuse("an answer for period " + shown(*of), fmt::format("one for period {}", period));
   }
   const auto value = json.find(key);
   if (value == json.end()) refuse("the answer " + shown(json), expected);

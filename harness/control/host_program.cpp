@@ -25,7 +25,7 @@ bool is_program(const fs::path& path) { return is_file(path) && ::access(path.c_
 std::string host_program() {
   if (const char* const given = std::getenv("QSMPC_HOST"); given != nullptr && *given != '\0') {
     if (is_program(given)) return given;
-    throw IoError(std::string(given) + ": no program, but QSMPC_HOST names it");
+    throw IoError(std::string(given) + ": not an executable file, but QSMPC_HOST names it");
   }
   // Beside the program in a build folder, or where both are installed.
   std::vector<fs::path> places{fs::path(own_object_file()).parent_path() / kName};

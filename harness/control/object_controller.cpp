@@ -34,7 +34,7 @@ ObjectController::ObjectController(ControllerObject object, const Scenario& scen
       patience_(answer_deadline(scenario.controller)),
       state_dim_(dynamics.state_dim()),
       decision_(scenario, dynamics) {
-  if (!object_.act) throw std::invalid_argument("a controller without a function to act");
+  if (!object_.act) throw std::invalid_argument("a controller without an act function");
 }
 
 template <class Work>

@@ -106,8 +106,7 @@ void OutsideController::end() {
 void OutsideController::tell(const std::string& message, double patience,
                              const char* deadline_key) {
   if (process_->send(message, after(patience))) return;
-  throw ChildFailure(
-      fmt::format("{} s in which it read nothing (controller.{})", patience, deadline_key));
+  throw ChildFailure(fmt::format("no input read for {} s (controller.{})", patience, deadline_key));
 }
 
 std::string OutsideController::answer_to(const std::string& message, double patience,
@@ -132,8 +131,7 @@ void OutsideController::start() {
 const controller::Decision& OutsideController::ask(const controller::Situation& situation) {
   const auto start = Clock::now();
   if (const std::optional<std::string> unasked = process_->unasked()) {
-    throw WrongAnswer{"an answer that nothing had asked for: " + printable(*unasked),
-                      "one answer a period"};
+    throw WrongAnswer{"an unrequested answer: " + printable(*unasked), "one answer per period"};
   }
   const double patience = answer_deadline(settings_);
   const std::string line = answer_to(situation_message(situation, patience), patience, "deadline");

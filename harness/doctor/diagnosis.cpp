@@ -61,20 +61,20 @@ std::string warning(AnswerVerdict verdict, const Scenario& scenario, const Plant
     case AnswerVerdict::kSign:
       return sizes + ": the wrong sign";
     case AnswerVerdict::kNone:
-      return sizes + ": it hardly acts";
+      return sizes + ": the plant hardly responds";
     case AnswerVerdict::kSize:
-      return fmt::format("{}: {} of the model's", sizes, format_short(found.ratio));
+      return fmt::format("{}: {} times the model's", sizes, format_short(found.ratio));
     case AnswerVerdict::kLate:
-      return fmt::format("{}: {} s late, {} periods", sizes, format_short(found.delay),
+      return fmt::format("{}: {} s late ({} periods)", sizes, format_short(found.delay),
                          format_short(found.delay / answers.period));
     case AnswerVerdict::kMismatch:
     case AnswerVerdict::kUnforeseen:
     case AnswerVerdict::kAsModel:
       break;
   }
-  return fmt::format("{}: up to {} a period apart{}, where the planned noise is {}", sizes,
+  return fmt::format("{}: they differ by up to {} per period{}, but the planned noise is {}", sizes,
                      number(found.discrepancy, coordinate),
-                     answer.input < 0 ? "" : " with the full input",
+                     answer.input < 0 ? "" : " at full input",
                      number(planned_deviation(scenario, state), coordinate));
 }
 
@@ -83,7 +83,7 @@ std::optional<std::string> tipping_warning(const PlantAnswers& answers) {
   const auto degrees = [](double angle) { return std::round(angle * 180.0 / std::numbers::pi); };
   if (answers.tilt_at_start > kTipped) {
     return fmt::format(
-        "the vehicle tips over while it settles: where drives begin it is tilted by {}°",
+        "the vehicle tips over while settling: at the start of a drive it is tilted by {}°",
         degrees(answers.tilt_at_start));
   }
   if (answers.tilt > kTipped) {
@@ -124,7 +124,7 @@ AnswerVerdict verdict_of(const Scenario& scenario, const PlantAnswers& answers,
 
 std::vector<std::string> answer_warnings(const Scenario& scenario, const PlantAnswers& answers) {
   if (answers.fault) {
-    return {fmt::format("the plant breaks within {} periods of small inputs: {}", answers.periods,
+    return {fmt::format("the plant fails within {} periods of small inputs: {}", answers.periods,
                         *answers.fault)};
   }
   const models::SystemDescription system = model_of(scenario)->description();

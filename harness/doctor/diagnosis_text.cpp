@@ -107,8 +107,8 @@ std::string suggestion(const Diagnosis& diagnosis) {
   const std::vector<std::string> left =
       answer_warnings(diagnosis.scenario, diagnosis.search->answers);
   std::string text = left.empty()
-                         ? "With these gains under plant, each state answers as in the model:\n"
-                         : "With these gains under plant, what is left is:\n";
+                         ? "With these gains under plant, each state responds as in the model:\n"
+                         : "With these gains under plant, these warnings remain:\n";
   for (const std::string& warning : left) text += "  - " + warning + "\n";
   return text + mapping_lines(diagnosis.search->mapping);
 }
@@ -174,7 +174,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
   text += aligned(rows);
   const std::vector<std::string> warnings = answer_warnings(scenario, answers);
   for (const std::string& warning : warnings) text += "warning: " + warning + "\n";
-  if (warnings.empty()) text += "ok: sign, size and delay are those of the model\n";
+  if (warnings.empty()) text += "ok: sign, size and delay match the model\n";
   return text + suggestion(diagnosis);
 }
 

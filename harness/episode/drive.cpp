@@ -332,14 +332,13 @@ const Scenario& Drive::scenario() const { return parts_->scenario; }
 void Drive::know_obstacles(const std::vector<controller::PlacesByStage>& obstacles) {
   const std::size_t count = parts_->forecast ? parts_->forecast->size() : 0;
   if (obstacles.size() != count) {
-    throw std::invalid_argument(
-        fmt::format("{} obstacles, where {} move", obstacles.size(), count));
+    throw std::invalid_argument(fmt::format("{} obstacles, but {} move", obstacles.size(), count));
   }
   const auto needed = static_cast<std::size_t>(forecast_stages(parts_->scenario)) + 1;
   for (std::size_t n = 0; n < count; ++n) {
     if (obstacles[n].size() < needed) {
-      throw std::invalid_argument(fmt::format("a forecast of {} stages, where {} are looked at",
-                                              obstacles[n].size(), needed));
+      throw std::invalid_argument(
+          fmt::format("a forecast of {} stages, but {} are needed", obstacles[n].size(), needed));
     }
     parts_->forecast->set(n, obstacles[n]);
   }

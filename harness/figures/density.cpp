@@ -31,13 +31,13 @@ void require(bool condition, const std::string& message) {
 
 /// Weights of `count` points that sum to one.
 Eigen::VectorXd normalised(const Eigen::Ref<const Eigen::VectorXd>& weights, Index count) {
-  require(count > 0, "there is no point");
+  require(count > 0, "there are no points");
   if (weights.size() == 0)
     return Eigen::VectorXd::Constant(count, 1.0 / static_cast<double>(count));
-  require(weights.size() == count, "as many weights as points are needed");
+  require(weights.size() == count, "there must be as many weights as points");
   require(weights.allFinite() && weights.minCoeff() >= 0.0, "weights must be finite and ≥ 0");
   const double largest = weights.maxCoeff();
-  require(largest > 0.0, "some weight must be positive");
+  require(largest > 0.0, "at least one weight must be positive");
   const Eigen::VectorXd scaled = weights / largest;  // no overflow in the sum
   return scaled / scaled.sum();
 }
@@ -87,7 +87,7 @@ void in_blocks(Index size, const Work& work) {
 
 Eigen::VectorXd spaced_about(const Eigen::Ref<const Eigen::VectorXd>& sample, double deviation,
                              int count) {
-  require(count >= 2, "a grid needs two places at least");
+  require(count >= 2, "a grid needs at least two points");
   const double reach = kTails * deviation;
   return Eigen::VectorXd::LinSpaced(count, sample.minCoeff() - reach, sample.maxCoeff() + reach);
 }
@@ -107,7 +107,7 @@ double effective_size(const Eigen::Ref<const Eigen::VectorXd>& weights) {
 Eigen::VectorXd kernel_density(const Eigen::Ref<const Eigen::VectorXd>& sample,
                                const Eigen::Ref<const Eigen::VectorXd>& weights,
                                const Eigen::Ref<const Eigen::VectorXd>& at) {
-  require(sample.allFinite() && at.allFinite(), "places must be finite");
+  require(sample.allFinite() && at.allFinite(), "points must be finite");
   const Eigen::VectorXd w = normalised(weights, sample.size());
   const double deviation = kernel_deviation(sample, w);
   Eigen::VectorXd density = Eigen::VectorXd::Zero(at.size());
@@ -119,7 +119,7 @@ Eigen::VectorXd kernel_density(const Eigen::Ref<const Eigen::VectorXd>& sample,
 
 DensityCurve density_curve(const Eigen::Ref<const Eigen::VectorXd>& sample,
                            const Eigen::Ref<const Eigen::VectorXd>& weights, int count) {
-  require(sample.allFinite(), "places must be finite");
+  require(sample.allFinite(), "points must be finite");
   const Eigen::VectorXd w = normalised(weights, sample.size());
   const Eigen::VectorXd x = spaced_about(sample, kernel_deviation(sample, w), count);
   const Eigen::VectorXd density = kernel_density(sample, w, x);
@@ -132,7 +132,7 @@ double DensityGrid::cell_area() const {
 
 DensityGrid density_grid(const Eigen::Ref<const Eigen::Matrix2Xd>& points,
                          const Eigen::Ref<const Eigen::VectorXd>& weights, int count) {
-  require(points.allFinite(), "places must be finite");
+  require(points.allFinite(), "points must be finite");
   const Eigen::VectorXd w = normalised(weights, points.cols());
   const PrincipalAxes spread = principal_axes_of(points, w);
   DensityGrid grid{.centre = spread.mean, .basis = spread.axes};

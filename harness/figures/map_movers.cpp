@@ -61,11 +61,11 @@ std::string movers_svg(const MapCanvas& canvas, const std::vector<MapMover>& mov
 std::vector<LegendEntry> mover_entries(const std::vector<MapMover>& movers) {
   std::vector<LegendEntry> entries;
   if (any(movers, &MapMover::nearest)) {
-    entries.push_back(round_entry(kNearest, "moving obstacle when the vehicle was nearest to it"));
+    entries.push_back(round_entry(kNearest, "moving obstacle when closest to the vehicle"));
   }
   if (std::any_of(movers.begin(), movers.end(),
                   [](const MapMover& mover) { return mover.way.size() > 1; })) {
-    entries.push_back(line_entry(std::string(kWay), "way of its middle"));
+    entries.push_back(line_entry(std::string(kWay), "path of its centre"));
   }
   if (any(movers, &MapMover::start)) {
     entries.push_back(round_entry(kStart, "moving obstacle at the start"));

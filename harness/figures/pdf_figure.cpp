@@ -67,7 +67,7 @@ std::string pdf_figure(const std::string& svg, const std::string& title) {
   double width = 0.0;
   double height = 0.0;
   if (rsvg_handle_get_intrinsic_size_in_pixels(handle.get(), &width, &height) == 0) {
-    throw std::invalid_argument("SVG figure: it does not say its size");
+    throw std::invalid_argument("SVG figure: no intrinsic size in pixels");
   }
   constexpr double kScale = kPointsPerInch / kUnitsPerInch;
   const RsvgRectangle page{0.0, 0.0, width * kScale, height * kScale};

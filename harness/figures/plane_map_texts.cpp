@@ -89,7 +89,7 @@ void add_ground_entries(std::vector<LegendEntry>& entries, const PlaneMap& map) 
     add_entry(entries, area_entry("obstacle", "obstacle"));
   }
   if (!map.partial_obstacles.empty()) {
-    add_entry(entries, area_entry("partial", "obstacle for some of the other states"));
+    add_entry(entries, area_entry("partial", "obstacle for some values of the other states"));
   }
   const MapRectangle& bounds = map.bounds;
   if (std::isfinite(bounds.x_lower) || std::isfinite(bounds.x_upper) ||

@@ -115,7 +115,7 @@ void write_file(const std::string& path, std::string_view text) {
 void make_output_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) fail(path, "be made a folder", error.value());
+  if (error) fail(path, "be created as a folder", error.value());
   if (!std::filesystem::is_directory(path, error)) fail(path, "be used as a folder", ENOTDIR);
   if (::access(path.c_str(), W_OK | X_OK) != 0) fail(path, "be written into", errno);
 }
@@ -127,7 +127,7 @@ void make_durable_folder(const std::string& path, const std::string& base) {
   make_durable_folder(parent, base);
   // EEXIST: another process may have created it meanwhile.
   if (::mkdir(path.c_str(), kFolderMode) != 0 && errno != EEXIST) {
-    fail(path, "be made a folder", errno);
+    fail(path, "be created as a folder", errno);
   }
   sync_path(parent, O_DIRECTORY);
 }

@@ -76,7 +76,7 @@ std::vector<EpisodeResult> run_episodes(const Scenario& scenario, int count,
 }
 
 ClosedLoop closed_loop_of(const std::vector<EpisodeResult>& episodes) {
-  if (episodes.empty()) throw std::invalid_argument("closed loop: no episode");
+  if (episodes.empty()) throw std::invalid_argument("closed loop: no episodes");
   ClosedLoop loop{.episodes = std::ssize(episodes),
                   .min_clearance = std::numeric_limits<double>::infinity()};
   for (const EpisodeResult& episode : episodes) {

@@ -103,7 +103,7 @@ void add_closed_loop(Layout& layout, const std::string& group) {
                       .units = {unit},
                       .comment = comment});
   };
-  add("seed", Type::kInt64, "1", "of the episode, as a signed number of 64 bits");
+  add("seed", Type::kInt64, "1", "of the episode, as a signed 64-bit integer");
   add("outcome", Type::kText, "1", "how the episode ended");
   add("steps", Type::kInt64, "periods", "");
   add("cost", Type::kFloat64, "1", "closed-loop cost along the true states");
@@ -123,13 +123,13 @@ void add_next_step(Layout& layout, const std::string& group) {
                       .units = {"1"},
                       .comment = comment});
   };
-  add("episode", Type::kInt64, "episode of the row of the same number, from 0");
+  add("episode", Type::kInt64, "index of the episode's row in closed_loop, from 0");
   add("certified", Type::kFloat64, "upper bound of the probability that the period ends unsafe");
   add("unsafe", Type::kInt64, "1 where it did");
 }
 
 void add_residuals(Layout& layout, const std::string& group, const ComparisonSizes& n) {
-  const std::string episode = "episode of the row of the same number, from 0";
+  const std::string episode = "index of the episode's row in closed_loop, from 0";
   layout.push_back(by_state(group + "/one_step/residuals", "period", n,
                             "x+ - w - f(x, u), episode after episode"));
   layout.push_back({.path = group + "/one_step/episode",
@@ -162,8 +162,8 @@ void add_residuals(Layout& layout, const std::string& group, const ComparisonSiz
 
 void add_horizon(Layout& layout, const std::string& group, const ComparisonSizes& n) {
   layout.push_back(of_paths(group + "/paths/states", n,
-                            "paths of the plant under the plan; stage 0 is the present; not a "
-                            "number from the stage on at which the plant broke"));
+                            "paths of the plant under the plan; stage 0 is the present; NaN from "
+                            "the stage at which the plant broke"));
   layout.push_back(of_paths(group + "/paths/residuals", n,
                             "x+ - w - f(x, u) of the period that begins at the stage"));
   layout.push_back(by_state(group + "/horizon/divergence_rmse", "stage", n,
@@ -351,7 +351,7 @@ std::vector<DatasetSpec> comparison_layout(const Comparison& comparison) {
   layout.push_back({.path = "/timing/speed",
                     .axes = {"plant"},
                     .units = {"s/s"},
-                    .comment = "simulated seconds a second of one plant; wall clock"});
+                    .comment = "simulated seconds per wall-clock second of one plant"});
   return layout;
 }
 

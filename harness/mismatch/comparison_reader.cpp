@@ -83,7 +83,7 @@ class ComparisonReader {
 void ComparisonReader::read_header() {
   const std::string expected = "a comparison of schema " + std::to_string(kComparisonSchema);
   if (!file_.has_attribute("/", "kind") || file_.text("/", "kind") != "comparison") {
-    refuse("/@kind", "no comparison", expected);
+    refuse("/@kind", "a file that is not a comparison", expected);
   }
   if (const std::int64_t found = file_.integer("/", "schema"); found != kComparisonSchema) {
     refuse("/@schema", "schema " + std::to_string(found), expected);
@@ -123,7 +123,7 @@ void ComparisonReader::check_datasets() const {
     std::vector<std::size_t> found = file_.shape(spec.path);
     if (found.size() != spec.row_shape.size() + 1 ||
         !std::equal(spec.row_shape.begin(), spec.row_shape.end(), found.begin() + 1)) {
-      refuse(spec.path, "another shape", "that of qsmpc compare");
+      refuse(spec.path, "a different shape", "the shape that qsmpc compare writes");
     }
   }
 }
@@ -140,7 +140,7 @@ void ComparisonReader::read_certificates() {
 void ComparisonReader::read_episodes(const std::string& group, PlantComparison& plant) const {
   const std::string own = group + "/closed_loop/";
   const std::size_t count = file_.shape(own + "seed").front();
-  if (count == 0) refuse(own + "seed", "no episode", "at least one");
+  if (count == 0) refuse(own + "seed", "no episodes", "at least one");
   const auto seeds = integers(own + "seed", count);
   expect_rows(own + "outcome", count);
   const auto outcomes = file_.texts(own + "outcome");

@@ -101,7 +101,7 @@ std::string one_step_section(const Comparison& comparison,
     const ResidualStatistics& one_step = plant.one_step;
     const bool exact = (one_step.rmse.array() <= one_step.rounding.array()).all();
     text += fmt::format("  {}{}\n", printable(plant.name, 60),
-                        exact ? ": the model, but for rounding" : "");
+                        exact ? ": matches the model except for rounding" : "");
     text += by_state("  rms", one_step.rmse, true);
     if (exact) continue;
     text += by_state("  mean", one_step.mean);
@@ -195,7 +195,7 @@ std::string scope_note(const Comparison& comparison) {
   if (why_no_bound(comparison.scenario).empty()) return {};
   return "NO BOUND: with measurement noise (disturbance.sensor) the feedback of the drives acts "
          "on\n"
-         "what is seen, of which certificates do not know. Along the plan the policy sees the "
+         "what is seen, which certificates do not cover. Along the plan the policy sees the "
          "state:\n"
          "certificates there are bounds.\n";
 }
@@ -204,17 +204,16 @@ std::string scope_note(const Comparison& comparison) {
 
 std::string comparison_table(const Comparison& comparison) {
   const models::SystemDescription& system = comparison.system;
-  return fmt::format("{}: plants beside the model {}, seed {}\n",
+  return fmt::format("{}: plants compared with the model {}, seed {}\n",
                      printable(comparison.scenario.name), system.name, comparison.scenario.seed) +
          drives_section(comparison) + closed_loop_section(comparison) +
          one_step_section(comparison, system) + horizon_section(comparison, system) +
          certificate_section(comparison) +
-         "to model: W2 between the laws of plant and model at most, from paths with equal "
-         "numbers.\n"
+         "to model: upper bound of W2 between plant and model, from the same random numbers.\n"
          "W2: between the predicted particles and the plant's paths.\n"
-         "floor: W2 where the plant is the model, as there are few particles and paths.\n"
-         "stages exceeded: the observed rate is certainly (99.5 % each) above the certificate.\n"
-         "p: small where more periods end unsafe than certified for them.\n" +
+         "floor: W2 where the plant is the model, because there are few particles and paths.\n"
+         "stages exceeded: the observed rate is above the certificate (99.5 % confidence each).\n"
+         "p: small where more periods end unsafe than certified.\n" +
          scope_note(comparison);
 }
 

@@ -35,7 +35,7 @@ std::string names_of(const mjModel& model, mjtObj type) {
     const std::string name = model.names + elements.addresses[i];
     if (!name.empty()) names += (names.empty() ? "" : ", ") + name;
   }
-  return names.empty() ? "none, as none has a name" : "one of " + names;
+  return names.empty() ? "none, because none has a name" : "one of " + names;
 }
 
 bool is_round(int type) {
@@ -62,7 +62,7 @@ int scalar_joint(const NamedModel& named, const std::string& name) {
   throw InputError({.file = named.file,
                     .key = "joint " + name,
                     .found = type == mjJNT_FREE ? "a free joint" : "a ball joint",
-                    .expected = "a slide or hinge joint, or a body's quantity in its place"});
+                    .expected = "a slide or hinge joint, or a quantity of a body instead"});
 }
 
 double wheel_radius(const NamedModel& named, int joint) {
@@ -77,11 +77,10 @@ double wheel_radius(const NamedModel& named, int joint) {
     }
   }
   if (radius > 0.0) return radius;
-  throw InputError(
-      {.file = named.file,
-       .key = "joint " + std::string(model.names + model.name_jntadr[joint]),
-       .found = "no wheel that it turns",
-       .expected = "a sphere, ellipsoid, cylinder or capsule that collides, on its body"});
+  throw InputError({.file = named.file,
+                    .key = "joint " + std::string(model.names + model.name_jntadr[joint]),
+                    .found = "a joint that turns no wheel",
+                    .expected = "a colliding sphere, ellipsoid, cylinder or capsule on its body"});
 }
 
 Eigen::Matrix3d body_rotation(const mjData& data, int body) {

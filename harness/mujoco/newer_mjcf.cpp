@@ -17,7 +17,7 @@ struct NewerName {
 };
 
 constexpr std::string_view kLeftOut = "leave it out";
-constexpr std::string_view kDrawing = "leave it out, it only concerns drawing";
+constexpr std::string_view kDrawing = "leave it out: it only affects drawing";
 constexpr std::string_view kForceRange = "give the actuators of the joint a forcerange";
 constexpr std::string_view kDeformable = "leave it out, or use a composite";
 
@@ -62,9 +62,9 @@ constexpr std::array kAttributes{
     NewerName{"dampratio", "3.1.6",
               "write damping at the joint, or a general actuator with biasprm=\"0 -kp -kv\""},
     NewerName{"timeconst", "3.1.6", "write a general actuator with dyntype=\"filter\""},
-    NewerName{"inheritrange", "3.1.3", "write the ctrlrange out"},
+    NewerName{"inheritrange", "3.1.3", "write the ctrlrange explicitly"},
     NewerName{"eulerdamp", "3.0.0",
-              "leave it out, Euler always integrates the damping of joints implicitly"},
+              "leave it out: Euler always integrates the damping of joints implicitly"},
     NewerName{"invdiscrete", "3.0.0", kLeftOut},
     NewerName{"island", "3.0.0", kLeftOut},
     NewerName{"nativeccd", "3.2.3", kLeftOut},
@@ -80,7 +80,7 @@ constexpr std::array kAttributes{
     NewerName{"maxhullvert", "3.2.0", kLeftOut},
     NewerName{"elevation", "3.1.2", "give the height field as a PNG file"},
     NewerName{"assetdir", "2.3.0", "write meshdir and texturedir"},
-    NewerName{"content_type", "2.3.7", "leave it out, the extension of the file name decides"},
+    NewerName{"content_type", "2.3.7", "leave it out: the file name extension decides"},
     NewerName{"realtime", "2.3.0", kDrawing},
     NewerName{"ellipsoidinertia", "2.3.4", kDrawing},
     NewerName{"bvactive", "3.1.2", kDrawing},
@@ -102,8 +102,8 @@ std::string hint_in(const Table& table, const std::string& complaint, const char
   if (!std::regex_search(complaint, match, std::regex(pattern))) return "";
   for (const NewerName& newer : table) {
     if (match[1].str() != newer.name) continue;
-    return fmt::format("a model for MuJoCo {}: {} came with {}; {}", mujoco_version(), newer.name,
-                       newer.version, newer.instead);
+    return fmt::format("a model for MuJoCo {}: {} was introduced in {}; {}", mujoco_version(),
+                       newer.name, newer.version, newer.instead);
   }
   return "";
 }
@@ -122,7 +122,7 @@ std::string newer_mjcf_hint(const std::string& complaint) {
   // MuJoCo's own message already states the replacement.
   if (std::regex_search(complaint, std::regex("has `\\w+` but not `\\w+`"))) {
     return fmt::format(
-        "a model for MuJoCo {}: a range limits without more only since 3.0.0; write <compiler "
+        "a model for MuJoCo {}: a range alone sets limits only since 3.0.0; write <compiler "
         "autolimits=\"true\"/>",
         mujoco_version());
   }

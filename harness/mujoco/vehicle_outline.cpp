@@ -152,7 +152,7 @@ class Sweep {
         {.file = named_.file,
          .key = std::string("joint ") + (named_.model.names + named_.model.name_jntadr[joint]),
          .found = "a part that slides without limits",
-         .expected = "a range, from which the vehicle's outline is known"});
+         .expected = "a joint range, which determines the vehicle's outline"});
   }
 
   const NamedModel& named_;
@@ -174,7 +174,7 @@ int checked_body(const NamedModel& named, const mjData& data, const VehicleEleme
   if (named.model.jnt_type[joint] == type && is_aligned) return body;
   throw InputError({.file = named.file,
                     .key = "joint " + element.name,
-                    .found = "a joint in another direction",
+                    .found = "a joint of another type or direction",
                     .expected = type == mjJNT_HINGE ? "a hinge about the world's z axis"
                                                     : "a slide along the world's axis"});
 }
@@ -222,7 +222,7 @@ VehicleOutline outline_of(const NamedModel& named, const mjData& data, const Veh
         {.file = named.file,
          .key = std::string("body ") + (named.model.names + named.model.name_bodyadr[carrier]),
          .found = "no geoms",
-         .expected = "geoms, from which the vehicle's outline is known"});
+         .expected = "geoms that determine the vehicle's outline"});
   }
   const double margin =
       kSweepMargin * std::max(outline.front - outline.rear, outline.left - outline.right);

@@ -24,7 +24,7 @@ class AnalyticPlant final : public Plant {
   MotionSample reset(const Eigen::VectorXd& state) override {
     require_size(state, dynamics_->state_dim(), "state");
     if (!state.allFinite()) {
-      throw std::invalid_argument("analytic plant: reset to a state not finite");
+      throw std::invalid_argument("analytic plant: reset to a non-finite state");
     }
     state_ = state;
     periods_ = 0;

@@ -32,19 +32,19 @@ void vary(models::ParameterMap& parameters, const char* what, double factor,
   if (any) return;
   throw InputError({.key = std::string("disturbance.") + what,
                     .found = "a deviation above 0",
-                    .expected = "0, as the system has no such constant, or a MuJoCo plant"});
+                    .expected = "0, because the system has no such constant, or a MuJoCo plant"});
 }
 
 std::unique_ptr<Plant> make_analytic(const Scenario& scenario, const PlantVariation& variation) {
   if (scenario.disturbance.kind != "state") {
     throw InputError({.key = "disturbance.kind",
                       .found = scenario.disturbance.kind,
-                      .expected = "state, as an analytic plant has no body to push"});
+                      .expected = "state, because an analytic plant has no body to push"});
   }
   if (scenario.plant.solid) {
     throw InputError({.key = "plant.solid",
                       .found = "true",
-                      .expected = "false, as an analytic plant has no body to stop"});
+                      .expected = "false, because an analytic plant has no body to stop"});
   }
   Scenario::Model model = scenario.model;
   models::ParameterMap& parameters = model.parameters;

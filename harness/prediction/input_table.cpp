@@ -93,7 +93,7 @@ class TableReader {
       }
       const auto here = cells.begin() + static_cast<std::ptrdiff_t>(column);
       if (std::find(cells.begin(), here, *here) != here) {
-        refuse(key, std::string(*here) + " once more", "every input once");
+        refuse(key, std::string(*here) + " a second time", "each input once");
       }
       order_[column] = static_cast<std::size_t>(known - names_.begin());
     }
@@ -101,7 +101,7 @@ class TableReader {
 
   void read_numbers(const std::vector<std::string_view>& cells) {
     if (std::ssize(rows_) == kMostStages) {
-      refuse("", fmt::format("more than {} rows", kMostStages), "one row a stage, no more");
+      refuse("", fmt::format("more than {} rows", kMostStages), "one row per stage, no more");
     }
     Eigen::VectorXd row(format_.bounds.lower.size());
     for (std::size_t column = 0; column < cells.size(); ++column) {
@@ -133,7 +133,7 @@ class TableReader {
       throw InputError({.file = file_,
                         .found = fmt::format("{} rows", count),
                         .expected = format_.stages
-                                        ? fmt::format("at least {}, one a stage", *format_.stages)
+                                        ? fmt::format("at least {}, one per stage", *format_.stages)
                                         : "at least one row: " + expected_row()});
     }
     Eigen::MatrixXd inputs(format_.bounds.lower.size(), count);

@@ -48,7 +48,7 @@ std::string law_table(const PredictionReport& report, const std::vector<int>& st
   if (stages.empty()) text = stage_rows(report, report.laws->floors.size());
   for (const int stage : stages) text += stage_rows(report, static_cast<std::size_t>(stage));
   text += fmt::format(
-      "W2: to {} of the paths; what sampling alone leaves of it is in the first row.\n"
+      "W2: to {} of the paths; the first row is the error of sampling alone.\n"
       "covariance: relative. ms: the whole horizon, one thread, median of up to {} runs.\n",
       kTransportPaths, kTimedRuns);
   return text;

@@ -75,8 +75,8 @@ void add_plan(Layout& layout, const Labels& n) {
 
 void add_particles(Layout& layout, const Labels& n) {
   const std::string slices =
-      "the points of stage s are the rows offsets[s] up to, without, offsets[s + 1], counted from "
-      "0; stage 0 is the quantised belief";
+      "the points of stage s are the rows from offsets[s] up to but not including offsets[s + 1], "
+      "counted from 0; stage 0 is the quantised belief";
   layout.push_back({.path = "/particles/locations",
                     .row_shape = {n.state_dim()},
                     .axes = {"point", "state"},
@@ -113,7 +113,7 @@ void add_particles(Layout& layout, const Labels& n) {
        .axes = {"stage", "state", "state"},
        .units = n.states.units,
        .columns = n.states.names,
-       .comment = "of the points: without what quantisation and compression left out"});
+       .comment = "of the points, without what quantisation and compression left out"});
 }
 
 void add_certificate(Layout& layout) {

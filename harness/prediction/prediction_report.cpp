@@ -67,7 +67,7 @@ void judge(const controller::PredictedMotion& motion, const PredictionOptions& o
 
 PredictionReport predict_scenario(const Scenario& asked, const PredictionOptions& options) {
   if (!options.methods.empty() && options.monte_carlo.samples < kKeptPaths) {
-    throw std::invalid_argument("prediction: too few simulated paths to compare methods with");
+    throw std::invalid_argument("prediction: too few simulated paths to compare methods");
   }
   for (const std::string& name : options.methods) (void)controller::law_method(name);
   const Scenario scenario = with_chosen_points(asked);

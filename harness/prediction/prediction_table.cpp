@@ -106,9 +106,9 @@ std::string scope_note(const Scenario& scenario) {
   }
   return scenario.model_error
              ? "P(unsafe)<= holds for plants within model_error under this plan as planned:\n"
-               "planning anew on the way is not in it.\n"
+               "replanning on the way is not covered.\n"
              : "P(unsafe)<= holds for the model under this plan as planned: a plant that\n"
-               "differs from it, and planning anew on the way, are not in it.\n";
+               "differs from it, and replanning on the way, are not covered.\n";
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ constexpr std::size_t kTitleLimit = 44;    // of a variant's name in a title
 constexpr double kBeside = 0.12;           // distance between points of one variant
 constexpr double kRoom = 0.5;              // margin left and right of the outer variants
 
-constexpr const char* kListedBefore = "The numbers are those of the first chart.";
+constexpr const char* kListedBefore = "Numbers as in the first chart.";
 constexpr const char* kRateLabel = "share of periods that ended unsafe (–)";
 
 /// Adds a point with its interval for each bin. A bin without events is drawn at 0, in the part of
@@ -119,10 +119,10 @@ Chart reliability_chart(const Reliability& shown, double least) {
   Chart chart{
       .title = shown.title,
       .note = fmt::format(
-          "Periods by what was certified for them, in half decades; 99 % intervals as if "
-          "periods were independent; at 0, none ended unsafe. Only a point whose whole "
-          "interval is shaded speaks against its value. {}.{}",
-          shown.none_holds ? "Certificates are no bounds here" : exceeded_text(shown.certified),
+          "Periods grouped by certified probability, in half-decade bins; 99 % intervals as if "
+          "periods were independent; at 0, no period ended unsafe. Only a point whose whole "
+          "interval is shaded contradicts its value. {}.{}",
+          shown.none_holds ? "Certificates are not bounds here" : exceeded_text(shown.certified),
           shown.no_bound),
       .x_label = "certified probability, mean of the bin (–)",
       .y_label = kRateLabel,
@@ -132,9 +132,9 @@ Chart reliability_chart(const Reliability& shown, double least) {
       .y_has_zero = true,
       .x_includes = {least, 1.0},
       .y_includes = {1.0}};
-  add_bins("published value, no bound", kOrange, not_bounds(shown.published), chart);
+  add_bins("published value, not a bound", kOrange, not_bounds(shown.published), chart);
   if (shown.none_holds) {
-    add_bins("certificate, no bound", kBlue, not_bounds(shown.certified), chart);
+    add_bins("certificate, not a bound", kBlue, not_bounds(shown.certified), chart);
   } else {
     add_bins("certificate", kBlue, shown.certified, chart);
   }
@@ -146,7 +146,7 @@ Chart reliability_chart(const Reliability& shown, double least) {
 
 Chart period_chart(const CampaignStatistics& statistics) {
   const double least = least_certified(statistics);
-  Chart chart{.title = "Periods by what was certified for them",
+  Chart chart{.title = "Periods by certified probability",
               .note = "Of all variants; the bin below 10⁻¹² is at the left end.",
               .x_label = "certified probability, mean of the bin (–)",
               .y_label = "periods in the bin",
@@ -156,7 +156,7 @@ Chart period_chart(const CampaignStatistics& statistics) {
               .least_shown = 1.0,
               .x_includes = {least, 1.0}};
   for (const auto& [name, colour, bins] :
-       {std::tuple{"published value, no bound", kOrange, &statistics.published},
+       {std::tuple{"published value, not a bound", kOrange, &statistics.published},
         std::tuple{"certificate", kBlue, &statistics.calibration}}) {
     Series series{.name = name, .colour = colour, .mark = Mark::kPoints};
     for (const CalibrationBin& bin : *bins) {
@@ -197,8 +197,8 @@ CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
   const std::vector<std::size_t> panels = variants_with_a_chart(statistics);
   if (panels.size() < statistics.variants.size()) {
     figure.charts[0].note += fmt::format(
-        " Of {} variants, {} have a chart of their own: those with exceeded bins before others, "
-        "then the first ones.",
+        " Of {} variants, {} have their own chart: those with exceeded bins first, then the others "
+        "in order.",
         statistics.variants.size(), panels.size());
   }
   for (const std::size_t n : panels) {
@@ -306,12 +306,12 @@ CampaignFigure outcome_figure(const CampaignStatistics& statistics) {
 
 /// Title and unit of a quantity of paired_quantities.
 std::pair<std::string, std::string> quantity_texts(const std::string& quantity) {
-  if (quantity == "reached") return {"Reached the target", "difference of the share (–)"};
-  if (quantity == "unsafe") return {"Entered the unsafe set", "difference of the share (–)"};
+  if (quantity == "reached") return {"Reached the target", "difference in share (–)"};
+  if (quantity == "unsafe") return {"Entered the unsafe set", "difference in share (–)"};
   if (quantity == "cost") return {"Cost", "mean difference (–)"};
   if (quantity == "min_clearance") return {"Least clearance", "mean difference (m)"};
   if (quantity == "certified") return {"Next-step certificate", "mean difference (–)"};
-  return {"Evaluations of a plan", "mean difference (–)"};
+  return {"Evaluations per plan", "mean difference (–)"};
 }
 
 CampaignFigure difference_figure(const CampaignStatistics& statistics) {

@@ -91,12 +91,12 @@ void add_paths(const VariantStatistics& variant, PlaneMap& map) {
 std::string drawn_text(const VariantStatistics& variant) {
   const std::int64_t drawn = std::ssize(variant.paths);
   if (drawn == variant.done && variant.reached.events == variant.done) return {};
-  if (drawn == variant.done) return "Dots: where drives ended that did not arrive.";
+  if (drawn == variant.done) return "Dots mark the ends of drives that did not reach the target.";
   return fmt::format(
-      "{} of {} drives are drawn, those first that were unsafe or did not arrive, which have a dot "
-      "at their end{}.",
+      "{} of {} drives are drawn, starting with those that were unsafe or did not reach the "
+      "target, which end in a dot{}.",
       drawn, variant.done,
-      drawn < kMostDrawnPaths ? "; the others were driven by an earlier version, which kept no path"
+      drawn < kMostDrawnPaths ? "; the others are from an earlier version, which stored no paths"
                               : "");
 }
 
@@ -235,15 +235,16 @@ DriveMaps drive_maps(const CampaignStatistics& statistics) {
     }
   }
   if (places.size() == kMostMaps && statistics.variants.size() > kMostMaps) {
-    drives.notes.push_back(fmt::format("Of {} variants, the {} with the most unsafe drives.",
-                                       statistics.variants.size(), kMostMaps));
+    drives.notes.push_back(
+        fmt::format("Of {} variants, only the {} with the most unsafe drives have a map.",
+                    statistics.variants.size(), kMostMaps));
   }
   return drives;
 }
 
 std::vector<Chart> distribution_charts(const CampaignStatistics& statistics) {
   const std::array quantities = {
-      Quantity{"Cost", "A drive that faulted has none.", "cost of a drive (–)",
+      Quantity{"Cost", "Drives that faulted have no cost.", "cost of a drive (–)",
                &VariantStatistics::cost},
       Quantity{"Least clearance", "Of the true state along a drive; unsafe at 0 and below.",
                "least clearance (m)", &VariantStatistics::min_clearance},

@@ -73,7 +73,7 @@ std::string bar_html(const VariantStatistics& variant, const std::vector<ListedO
   return fmt::format(
       "<svg class=\"bar\" viewBox=\"0 0 {} 10\" preserveAspectRatio=\"none\" role=\"img\" "
       "aria-label=\"{}\">{}</svg>",
-      kBarLength, escape_html(words.empty() ? "no drive yet" : words), parts);
+      kBarLength, escape_html(words.empty() ? "no drives yet" : words), parts);
 }
 
 /// A share in percent above its limits; in soft print if it is 0, highlighted if it is a failure.
@@ -116,7 +116,8 @@ PageVerdict outcome_verdict(const CampaignStatistics& statistics) {
     reached += variant.reached.events;
     unsafe += variant.unsafe.events;
   }
-  if (done == 0) return {.mood = PageMood::kOpen, .title = "No drive is done", .sentences = {}};
+  if (done == 0)
+    return {.mood = PageMood::kOpen, .title = "No drive has finished", .sentences = {}};
   const auto share = [&](std::int64_t count) {
     return format_percent(static_cast<double>(count) / static_cast<double>(done));
   };
@@ -152,12 +153,12 @@ std::string campaign_outcomes(const CampaignStatistics& statistics) {
     table.rows.push_back(std::move(row));
   }
   std::string note = "Shares of the drives with their " + interval_words(statistics) +
-                     ", in percent. Collision and left bounds: where the true state first was "
-                     "unsafe, also of a drive that went on.";
+                     ", in percent. Collision and left bounds: how the true state first became "
+                     "unsafe, even if the drive continued.";
   if (outcomes.size() > listed_outcomes().size()) {
     note +=
-        " Left safe set: the same of drives of an earlier version, which did not tell the two "
-        "apart.";
+        " Left safe set: either of the two, in drives of an earlier version that did not "
+        "distinguish them.";
   }
   return verdict_html(outcome_verdict(statistics)) +
          section_head("What became of the drives", note) + outcome_legend(outcomes) +

@@ -47,17 +47,17 @@ PageVerdict certificate_verdict(const CampaignStatistics& statistics) {
     exceeded += exceeded_bins(variant.calibration);
   }
   const char* scope =
-      "This is about the certificates alone: whether periods end unsafe more often than was "
-      "certified for them, not whether the drives went well.";
+      "This concerns the certificates only: whether periods end unsafe more often than certified, "
+      "not whether the drives went well.";
   if (periods == 0) {
-    return {.mood = PageMood::kOpen, .title = "Certificates: no period yet", .sentences = {}};
+    return {.mood = PageMood::kOpen, .title = "Certificates: no periods yet", .sentences = {}};
   }
   const bool none_holds = none_is_bound(statistics);
-  if (none_holds) scope = "None of them is a bound, so that none can be exceeded.";
+  if (none_holds) scope = "None of them is a bound, so none can be exceeded.";
   return {.mood = none_holds     ? PageMood::kOpen
                   : exceeded > 0 ? PageMood::kBad
                                  : PageMood::kGood,
-          .title = none_holds     ? "Certificates: no bounds here"
+          .title = none_holds     ? "Certificates: not bounds here"
                    : exceeded > 0 ? "Certificates are exceeded"
                                   : "No certificate is refuted",
           .sentences = {
@@ -97,8 +97,8 @@ std::string spread_table(const CampaignStatistics& statistics) {
   }
   return section_head(
              "Cost, clearance, time",
-             "Means and percentiles. A drive that faulted ranks as the worst. Times are of "
-             "the drives that arrived.") +
+             "Means and percentiles. Drives that faulted rank as the worst. Times are for drives "
+             "that reached the target.") +
          table_html(table);
 }
 
@@ -121,8 +121,8 @@ std::string certificates_table(const CampaignStatistics& statistics) {
   }
   return section_head(
              "Certificates of the next step, and planning",
-             "Believed: what the controller itself took for the probability, no bound. p is "
-             "small where more periods end unsafe than certified for them." +
+             "Believed: the controller's own estimate of the probability, not a bound. p is small "
+             "where more periods end unsafe than certified." +
                  no_bound_words(statistics)) +
          verdict_html(certificate_verdict(statistics)) + table_html(table);
 }
@@ -130,11 +130,11 @@ std::string certificates_table(const CampaignStatistics& statistics) {
 std::string differences_table(const CampaignStatistics& statistics) {
   if (statistics.differences.empty()) return {};
   PageTable table{.label = "Differences between variants, seed by seed",
-                  .heads = {"variant less baseline"},
+                  .heads = {"variant − baseline"},
                   .rows = {}};
   for (const std::string& quantity : paired_quantities()) table.heads.push_back(quantity);
   for (const VariantDifference& difference : statistics.differences) {
-    std::vector<std::string> row = {fmt::format("{} less {}",
+    std::vector<std::string> row = {fmt::format("{} − {}",
                                                 statistics.variants[difference.pair.variant].id,
                                                 statistics.variants[difference.pair.baseline].id)};
     for (const MeanDifference& mean : difference.quantities) {
@@ -145,8 +145,8 @@ std::string differences_table(const CampaignStatistics& statistics) {
   return section_head("Differences, seed by seed",
                       std::string("Means with 99 % bootstrap intervals.") +
                           (statistics.campaign.until
-                               ? " These are made for a number of seeds that is fixed beforehand; "
-                                 "here it depends on what happened, so that they are a guide."
+                               ? " They assume a number of seeds that is fixed in advance; here it "
+                                 "depends on the results, so they are only a guide."
                                : "")) +
          table_html(table);
 }
@@ -202,9 +202,10 @@ std::string worst_table(const CampaignStatistics& statistics,
          number_html(row.cost), files_html(episode)});
   }
   return section_head("The worst episodes",
-                      "First those that entered the unsafe set or whose simulator gave up, then by "
-                      "least clearance, then by cost. Commands are for the folder of this page; "
-                      "“qsmpc report . --worst N” makes page and video of the N worst at once.") +
+                      "First those that entered the unsafe set or whose simulator failed, then by "
+                      "least clearance, then by cost. Run the commands in the folder of this page; "
+                      "“qsmpc report . --worst N” creates the pages and videos of the N worst at "
+                      "once.") +
          table_html(table);
 }
 
@@ -244,7 +245,7 @@ std::string drives_section(const CampaignStatistics& statistics,
   const bool share_a_grid = panels.size() == 1;
   if (share_a_grid) panels.insert(panels.end(), distributions.begin(), distributions.end());
   std::string html;
-  if (!panels.empty() || !drives.notes.empty()) html += section_head("Where they drove", {});
+  if (!panels.empty() || !drives.notes.empty()) html += section_head("Driven paths", {});
   for (const std::string& note : drives.notes) {
     html += "<p class=\"note\">" + escape_html(note) + "</p>\n";
   }

@@ -41,9 +41,9 @@ ComparisonFigure residual_figure(const Comparison& comparison,
                                  const models::SystemDescription& system) {
   Chart chart{.title = "One-step residual: what the plant adds to model and disturbance",
               .note =
-                  "Root mean square over all periods of all episodes. What the model does not "
-                  "explain of the plant's next state, the disturbance taken away. What is below "
-                  "10⁻⁹, as rounding is, is at the foot.",
+                  "Root mean square over all periods of all episodes. The part of the plant's next "
+                  "state that the model and the disturbance do not explain. Values below 10⁻⁹, "
+                  "such as rounding errors, are drawn at the bottom.",
               .x_label = "state",
               .y_label = "root mean square (unit of the state)",
               .y_scale = Scale::kLog,
@@ -102,8 +102,9 @@ ComparisonFigure divergence_figure(const Comparison& comparison,
 ComparisonFigure w2_figure(const Comparison& comparison) {
   Chart chart{.title = "W₂ between the predicted measure and the plant",
               .note = fmt::format(
-                  "Floor: the same for {} of the model itself, mean and two standard deviations "
-                  "of {} ensembles. A plant within it cannot be told from the model.",
+                  "Floor: the same distance for {} of the model itself, mean and two standard "
+                  "deviations over {} ensembles. A plant within it cannot be distinguished from "
+                  "the model.",
                   comparison.w2_paths > 0 ? fmt::format("{} paths", comparison.w2_paths) : "paths",
                   kFloorEnsembles),
               .x_label = kStageLabel,
@@ -160,8 +161,8 @@ Chart certificate_chart(const Comparison& comparison, const PlantComparison& pla
   };
   Chart chart{.title = "Certificates: " + plant.name,
               .note =
-                  "Bounds of the probability of being unsafe under the plan, and the share of "
-                  "the plant's paths that are. A bound is exceeded where a whole interval is "
+                  "Bounds of the probability of being unsafe under the plan, and the share of the "
+                  "plant's paths that are unsafe. A bound is exceeded where a whole interval lies "
                   "above it.",
               .x_label = kStageLabel,
               .y_label = "probability (–)",

@@ -31,8 +31,8 @@ std::string kicker(const Comparison& comparison) {
   const Scenario& scenario = comparison.scenario;
   const bool is_single = comparison.plants.size() == 1;
   return fmt::format(
-      "<p class=\"kicker\">{} plant{} beside the model {} · {} episodes and {} paths{} · "
-      "{} · seed {}</p>\n",
+      "<p class=\"kicker\">{} plant{} compared with the model {} · {} episodes and {} paths{} · {} "
+      "· seed {}</p>\n",
       comparison.plants.size(), is_single ? "" : "s", escape_html(scenario.model.system),
       comparison.plants.front().closed_loop.episodes, comparison.paths, is_single ? "" : " of each",
       escape_html(controller_words(scenario)), scenario.seed);
@@ -69,10 +69,10 @@ std::string closed_loop_section(const Comparison& comparison) {
   }
   return section_head(
              "Closed loop",
-             "Drives with the same seeds. Collision and left bounds: where the true state "
-             "first was unsafe at a control instant. Unsafe: all that were, also those that "
-             "faulted later. Mean cost with its standard error. Speed: simulated "
-             "seconds a second of one plant in one thread, without planner; wall clock.") +
+             "Drives with the same seeds. Collision and left bounds: how the true state first "
+             "became unsafe at a control instant. Unsafe: all drives that were, including those "
+             "that faulted later. Mean cost with its standard error. Speed: simulated seconds per "
+             "wall-clock second of one plant in one thread, without the planner.") +
          table_html(table);
 }
 
@@ -84,8 +84,8 @@ std::string state_head(const models::Coordinate& state) {
 PageTable residual_table(const Comparison& comparison, const PlantComparison& plant,
                          const models::SystemDescription& system) {
   PageTable table{.label = "One period, by state: " + plant.name,
-                  .heads = {"state", "root mean square", "mean", "disturbance",
-                            "correlation with the next", "p, no memory"},
+                  .heads = {"state", "root mean square", "mean", "disturbance", "lag-1 correlation",
+                            "p (white noise)"},
                   .rows = {}};
   const ResidualStatistics& own = plant.one_step;
   for (Eigen::Index i = 0; i < own.rmse.size(); ++i) {
@@ -116,7 +116,7 @@ std::string residuals_of(const Comparison& comparison, const PlantComparison& pl
                          const models::SystemDescription& system) {
   if (is_the_model(plant)) {
     return fmt::format(
-        "<p>It is the model: what differs is rounding, of at most {} in any state (root mean "
+        "<p>It matches the model except for rounding, which is at most {} in any state (root mean "
         "square).</p>\n",
         number_html(plant.one_step.rmse.maxCoeff()));
   }
@@ -148,7 +148,7 @@ std::string residual_section(const Comparison& comparison, const models::SystemD
   const std::string head = section_head(
       "One period: what the plant adds to model and disturbance",
       "Over all periods of all episodes. Mean with its standard error; the disturbance’s standard "
-      "deviation for scale. p is small where a residual says something of the next ones.");
+      "deviation for scale. p is small where residuals are correlated over time.");
   std::string tables;
   for (const PlantComparison& plant : comparison.plants) {
     tables += name_head(plant) + residuals_of(comparison, plant, system);
@@ -175,9 +175,10 @@ std::string rate_html(const Comparison& comparison, const HorizonStage& stage) {
 }
 
 PageTable stage_table(const Comparison& comparison, const PlantComparison& plant) {
-  PageTable table{.label = "Along the plan, by stage: " + plant.name,
-                  .heads = {"stage", "W₂ to the model, at most", "W₂", "floor of W₂", "certified"},
-                  .rows = {}};
+  PageTable table{
+      .label = "Along the plan, by stage: " + plant.name,
+      .heads = {"stage", "W₂ to the model, upper bound", "W₂", "floor of W₂", "certified"},
+      .rows = {}};
   if (comparison.with_error) table.heads.emplace_back("with model error");
   table.heads.emplace_back("observed, 99 % interval");
   for (std::size_t k = 0; k < plant.horizon.size(); ++k) {
@@ -244,7 +245,7 @@ const HorizonStage& worst_stage(const PlantComparison& plant) {
 
 std::string certificate_section(const Comparison& comparison, const ComparisonFigure& figure) {
   PageTable table{
-      .label = "Certificates against what was observed, by plant",
+      .label = "Certificates against observations, by plant",
       .heads = {"plant", "stages exceeded", "worst stage", "certified there",
                 "observed there, 99 % interval", "paths broken", "periods", "ended unsafe",
                 certified_head(comparison), "p", "exceeded in closed loop"},
@@ -268,13 +269,12 @@ std::string certificate_section(const Comparison& comparison, const ComparisonFi
                                                             : "–"});
   }
   return section_head(
-             fmt::format("Certificates {} model error, against what was observed",
+             fmt::format("Certificates {} model error, against observations",
                          comparison.with_error ? "with the scenario’s" : "without"),
              "Under the plan: a stage is exceeded where the whole interval of the observed share "
-             "of unsafe paths lies above its certificate; the worst one is where most paths are "
-             "unsafe. In "
-             "closed loop: the periods that ended unsafe beside the sum of what was certified for "
-             "them; p is small where these are more than the certificates allow.") +
+             "of unsafe paths lies above its certificate; the worst stage has the most unsafe "
+             "paths. In closed loop: the number of periods that ended unsafe next to the sum of "
+             "their certificates; p is small where there are more than the certificates allow.") +
          table_html(table) + figures(figure);
 }
 
@@ -283,9 +283,9 @@ std::string certificate_section(const Comparison& comparison, const ComparisonFi
 std::string comparison_page(const Comparison& comparison) {
   const models::SystemDescription& system = comparison.system;
   const std::vector<ComparisonFigure> all = comparison_figures(comparison);
-  std::string html =
-      fmt::format("<h1>{}: {} beside the model</h1>\n", escape_html(comparison.scenario.name),
-                  comparison.plants.size() == 1 ? "a plant" : "plants");
+  std::string html = fmt::format("<h1>{}: {} compared with the model</h1>\n",
+                                 escape_html(comparison.scenario.name),
+                                 comparison.plants.size() == 1 ? "a plant" : "plants");
   html += kicker(comparison);
   if (const auto unsafe = unsafe_verdict(comparison)) html += verdict_html(*unsafe);
   if (const auto no_bound = no_bound_verdict(comparison)) html += verdict_html(*no_bound);

@@ -35,7 +35,7 @@ std::string exceeded_text(const PlantComparison& plant) {
 /// States how far a single plant is from the model.
 std::string distance_text(const PlantComparison& plant) {
   const std::string name = name_of(plant);
-  if (is_the_model(plant)) return fmt::format("{} is the model, but for rounding.", name);
+  if (is_the_model(plant)) return fmt::format("{} matches the model except for rounding.", name);
   const double divergence = largest_divergence(plant);
   if (!std::isfinite(divergence)) return fmt::format("{} broke on every path.", name);
   return fmt::format(
@@ -47,7 +47,7 @@ std::string distance_text(const PlantComparison& plant) {
 std::string farthest_text(const Comparison& comparison) {
   if (comparison.plants.size() == 1) return distance_text(comparison.plants.front());
   if (std::ranges::all_of(comparison.plants, is_the_model)) {
-    return "Every plant is the model, but for rounding.";
+    return "Every plant matches the model except for rounding.";
   }
   const PlantComparison& plant =
       *std::ranges::max_element(comparison.plants, {}, largest_divergence);
@@ -125,7 +125,7 @@ std::optional<PageVerdict> unsafe_verdict(const Comparison& comparison) {
 std::optional<PageVerdict> no_bound_verdict(const Comparison& comparison) {
   const std::string why = why_no_bound(comparison.scenario);
   if (why.empty()) return std::nullopt;
-  return PageVerdict{.title = "Certificates of the drives are no bounds",
+  return PageVerdict{.title = "Certificates of the drives are not bounds",
                      .sentences = {"They hold for a policy that sees the state; " + why +
                                    ". Along the plan the policy does see the state: the "
                                    "certificates of its stages are bounds."}};
@@ -143,8 +143,8 @@ PageVerdict comparison_verdict(const Comparison& comparison) {
   verdict.sentences.push_back(farthest_text(comparison));
   if (is_good) {
     verdict.sentences.push_back(fmt::format(
-        "This is no proof: none of {} paths unsafe is still compatible with a "
-        "probability of {}.",
+        "This is not a proof: no unsafe path among {} is still compatible with a probability of "
+        "{}.",
         comparison.paths,
         format_bound(
             clopper_pearson(0, std::max<std::int64_t>(1, comparison.paths), kIntervalTail).upper)));

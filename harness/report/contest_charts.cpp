@@ -59,7 +59,7 @@ std::string missing_dots(const ContestResults& results, const std::vector<Standi
     names += (names.empty() ? "" : ", ") +
              printable(results.contest.controllers[n].name, kDotLabelLimit);
   }
-  return names.empty() ? names : "No drive that arrives, and no dot: " + names + ".";
+  return names.empty() ? names : "No dot because no drive arrives: " + names + ".";
 }
 
 Chart standings_chart(const ContestResults& results, const std::string& title,

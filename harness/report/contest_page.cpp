@@ -132,7 +132,7 @@ std::string overall_table(const ContestResults& results) {
   append(table.heads, outcome_heads());
   if (has_faults(results)) table.heads.emplace_back("fault");
   append(table.heads,
-         {"unsafe, less reference", "believed", "certified", "cost, to reference", "ms", "99 %"});
+         {"unsafe, vs reference", "believed", "certified", "cost, vs reference", "ms", "99 %"});
   for (std::size_t n = 0; n < results.overall.size(); ++n) {
     const Standing& standing = results.overall[n];
     std::vector<std::string> row = {escape_html(results.contest.controllers[n].name)};
@@ -150,23 +150,21 @@ std::string overall_note(const ContestResults& results) {
   const std::string reference =
       escape_html(results.contest.controllers[results.contest.reference].name);
   std::string note = fmt::format(
-      "<p class=\"note\">In brackets 99 % intervals. Unsafe, less reference: share of drives that "
-      "collided or left the "
-      "bounds, less that of {0} on the same seeds, in points of percent. Believed and certified: "
-      "sums over a drive of "
-      "the "
-      "probabilities that the next state is unsafe, by the controller itself and by its "
-      "certificates. Cost: of drives that arrive, against {0} on the seeds on which both do. ",
+      "<p class=\"note\">In brackets: 99 % intervals. Unsafe, vs reference: share of drives that "
+      "collided or left the bounds, minus that of {0} on the same seeds, in percentage points. "
+      "Believed and certified: sums over a drive of the probabilities that the next state is "
+      "unsafe, according to the controller itself and to its certificates. Cost: of drives that "
+      "arrive, relative to {0} on the seeds on which both arrive. ",
       reference);
   note += results.timed
               ? fmt::format(
-                    "ms: planning and certifying a period, of {} driven one at a "
-                    "time on one core, median and 99th percentile. ",
+                    "ms: time to plan and certify a period, from {} driven one at a time on one "
+                    "core, median and 99th percentile. ",
                     counted(static_cast<std::size_t>(std::min(results.contest.timing_seeds,
                                                               results.contest.seeds.size())),
                             "seed"))
               : "Times have not been measured yet. ";
-  return note + "▲ and ▼: better and worse at the level of 1 %.</p>\n";
+  return note + "▲ and ▼: better and worse at the 1 % significance level.</p>\n";
 }
 
 std::string words_card(const ContestResults& results) {
@@ -182,8 +180,8 @@ std::string words_card(const ContestResults& results) {
 std::string first_screen(const ContestResults& results) {
   const std::vector<Chart> charts = contest_charts(results);
   const std::string figure =
-      charts.empty() ? "<p class=\"note\">No drive of any controller arrives: there is no cost to "
-                       "draw.</p>\n"
+      charts.empty() ? "<p class=\"note\">No drive of any controller arrives, so there is no cost "
+                       "to draw.</p>\n"
                      : chart_figure(charts.front());
   return "<div class=\"contest\">\n" + figure + words_card(results) + "</div>\n" +
          overall_table(results) + overall_note(results);
@@ -196,7 +194,7 @@ std::string cells_section(const ContestResults& results) {
   append(table.heads, {"controller"});
   append(table.heads, outcome_heads());
   append(table.heads,
-         {"unsafe, less reference", "believed", "certified", "cost, to reference", "ms", "99 %"});
+         {"unsafe, vs reference", "believed", "certified", "cost, vs reference", "ms", "99 %"});
   for (const CellStandings& cell : results.cells) {
     for (std::size_t n = 0; n < cell.standings.size(); ++n) {
       const Standing& standing = cell.standings[n];
@@ -216,9 +214,9 @@ std::string cells_section(const ContestResults& results) {
              "Each map, plant and noise",
              "Left and down is better. Whiskers are 99 % intervals; a controller without "
              "an unsafe drive stands at 0, left of the break. Costs are means over the "
-             "drives that arrive: a controller that arrives from easy starts only looks "
-             "cheaper than it is, and the table compares the seeds on which both do. contest.csv "
-             "has all intervals.") +
+             "drives that arrive: a controller that arrives only from easy starts looks cheaper "
+             "than it is, so the table compares the seeds on which both arrive. contest.csv has "
+             "all intervals.") +
          fmt::format("<div class=\"grid{}\">\n", results.cells.size() % 3 == 0 ? " thirds" : "") +
          charts + "</div>\n" + table_html(table);
 }
@@ -236,7 +234,7 @@ std::string settings_html(const std::vector<CampaignSetting>& settings) {
 std::string tried_table(const ContestController& controller,
                         const std::vector<TriedCandidate>& tried, std::size_t chosen) {
   PageTable table{.label = "Candidates of " + controller.name,
-                  .heads = {"candidate", "drives", "unsafe or not there", "cost, relative", ""},
+                  .heads = {"candidate", "drives", "unsafe or not arrived", "cost, relative", ""},
                   .rows = {},
                   .text_columns = {4}};
   for (const TriedCandidate& one : tried) {
@@ -270,8 +268,7 @@ std::string tuning_section(const ContestResults& results) {
       "same starts and the same disturbances.";
   if (contest.tuning) {
     note += fmt::format(
-        " Of each, up to {} were tried on the seeds {}, which the table does not "
-        "have: {}.",
+        " For each, up to {} were tried on the seeds {}, which the table does not contain: {}.",
         counted(static_cast<std::size_t>(contest.tuning->budget), "candidate"),
         seeds_text(contest.tuning->seeds), kTuningCriterion);
   }
@@ -290,7 +287,7 @@ std::string contest_page(const ContestResults& results) {
       {.title = results.contest.name, .version = results.version, .kind = PageKind::kTables},
       contest_head(results) + first_screen(results) + cells_section(results) +
           tuning_section(results) +
-          "<p class=\"note\">Every drive, with maps and the worst ones: "
+          "<p class=\"note\">All drives, with maps and the worst ones: "
           "<a href=\"./report.html\">report.html</a>. All numbers: "
           "<a href=\"./contest.json\">contest.json</a>, "
           "<a href=\"./contest.csv\">contest.csv</a>.</p>\n");

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
 constexpr const char* kTimeLabel = "time (s)";
-constexpr const char* kAtFoot = "What is below the axis, 0 included, is drawn at its foot.";
+constexpr const char* kAtFoot = "Values below the axis, including 0, are drawn at the bottom.";
 
 std::vector<double> times_of(const Trace& trace) {
   std::vector<double> times;
@@ -139,7 +139,7 @@ Chart certificate_chart(const EpisodeView& view) {
   };
   const bool holds = view.summary().no_bound.empty();
   Chart chart{.title = holds ? "Certificates: bounds of the probability of being unsafe"
-                             : "Certificates, no bounds: see above",
+                             : "Certificates, not bounds: see above",
               .note = kAtFoot,
               .x_label = kTimeLabel,
               .y_label = "probability (–)",
@@ -240,7 +240,8 @@ Chart timing_chart(const Trace& trace) {
   const auto part = [](auto member) {
     return [member](const StepRecord& step) { return step.timing.*member; };
   };
-  Series fallbacks{.name = "last plan kept instead", .colour = kVermilion, .mark = Mark::kPoints};
+  Series fallbacks{
+      .name = "previous plan used instead", .colour = kVermilion, .mark = Mark::kPoints};
   for (const StepRecord& step : trace.steps) {
     if (!step.fallback) continue;
     fallbacks.x.push_back(step.time);
@@ -291,7 +292,7 @@ Chart solve_time_histogram(const Trace& trace) {
     series.y.push_back(counts[bin]);
   }
   const double highest = *std::max_element(counts.begin(), counts.end());
-  Chart chart{.title = "Solve times: how often",
+  Chart chart{.title = "Solve times: histogram",
               .note = fmt::format("{} steps in {} equal bins.", trace.steps.size(), kBins),
               .x_label = "wall clock (ms)",
               .y_label = "steps (–)",

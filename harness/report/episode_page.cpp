@@ -25,21 +25,21 @@ constexpr std::string_view kMeaning =
     "<section class=\"card\">\n<h3>What a certificate says</h3>\n"
     "<p>A certificate is an upper bound of the probability that the <em>model’s</em> state is "
     "unsafe: at the next step, given the belief from which the plan was made. The certificate of a "
-    "plan adds its stages up and speaks of the plan as planned, not of what is planned anew at "
-    "every step. Neither covers the plant’s mismatch to the model, which is measured "
-    "below.</p>\n</section>\n";
+    "plan sums over its stages and holds for the plan as made, not for the replanning at every "
+    "step. Neither covers the plant’s mismatch to the model, which is measured below.</p>\n"
+    "</section>\n";
 
 constexpr std::string_view kMeaningWithoutPlan =
     "<section class=\"card\">\n<h3>What a certificate says</h3>\n"
     "<p>A certificate is an upper bound of the probability that the <em>model’s</em> state is "
     "unsafe at the next step, given what was observed when the input was chosen. This controller "
-    "makes no plan, so that nothing is said of later steps. The plant’s mismatch to the model is "
-    "not covered; it is measured below.</p>\n</section>\n";
+    "makes no plan, so later steps are not covered. Nor is the plant’s mismatch to the model, "
+    "which is measured below.</p>\n</section>\n";
 
 constexpr std::string_view kMismatchNote =
     "<h3>Mismatch of the plant against the planner’s model</h3>\n"
-    "<p class=\"note\">What is left of the plant’s next state after the model’s prediction and the "
-    "disturbance are taken away, over all steps. An exact model has zeros.</p>\n";
+    "<p class=\"note\">The plant’s next state minus the model’s prediction and the disturbance, "
+    "over all steps. For an exact model, all values are 0.</p>\n";
 
 std::string introduction(const Trace& trace) {
   const Scenario& scenario = trace.scenario;
@@ -64,16 +64,16 @@ std::string video(const EpisodePageOptions& options) {
 }
 
 constexpr std::string_view kMapOfPlans =
-    "; the vehicle, and dashed where the model without noise would be; the plan with its belief, "
+    "; the vehicle and, dashed, where the model without noise would be; the plan with its belief, "
     "stage by stage from <span class=\"first\">now</span> to <span class=\"last\">its end</span>";
 constexpr std::string_view kMapOfParticles =
-    ": particles, and ellipses about 50 and (dashed) 95 % of the probability of a normal "
-    "distribution with their mean and covariance";
+    ": particles, and ellipses that contain 50 and (dashed) 95 % of a normal distribution with "
+    "their mean and covariance";
 
-constexpr std::string_view kMapOfMoving = "; in blue, the obstacles that move";
+constexpr std::string_view kMapOfMoving = "; in blue, the moving obstacles";
 constexpr std::string_view kMapOfForecasts =
-    "; in blue, the obstacles that move, and about where the plan took their middles to be going, "
-    "ellipses of two standard deviations, the fainter the later and the less probable";
+    "; in blue, the moving obstacles and, as ellipses of two standard deviations, the plan’s "
+    "forecast of their centres, fainter the later and the less probable";
 
 std::string layer_box(std::string_view layer, std::string_view words) {
   return fmt::format(
@@ -85,7 +85,7 @@ std::string live_map(const PlaneMap* map, const controller::DecisionParts& parts
   if (map == nullptr) return {};
   std::string html =
       "<figure class=\"card\" id=\"live-map\" hidden>\n<figcaption>The map at this moment"
-      "</figcaption>\n<p class=\"note\">The way driven, from <span class=\"near\">near</span> the "
+      "</figcaption>\n<p class=\"note\">The driven path, from <span class=\"near\">near</span> the "
       "unsafe set to <span class=\"far\">1 m and more</span> from it";
   html += parts.stages > 0 ? kMapOfPlans : "; the vehicle";
   if (parts.particles) html += kMapOfParticles;
@@ -114,19 +114,18 @@ std::string scene_figure(const EpisodeScene& scene, bool in_plane,
   if (scene.data.empty()) return note;
   std::string html =
       "<figure class=\"card\" id=\"scene\" hidden>\n<figcaption>The drive in three dimensions"
-      "</figcaption>\n<p class=\"note how\">Drag to turn it, with the right button or two fingers "
-      "to move it. Once clicked, the wheel and the keys plus and minus bring it nearer and "
-      "farther, "
-      "and the arrow keys turn it.</p>\n"
+      "</figcaption>\n<p class=\"note how\">Drag to rotate; drag with the right button or two "
+      "fingers to move. After a click, the wheel and the plus and minus keys zoom, and the arrow "
+      "keys rotate.</p>\n"
       "<div class=\"layers\">" +
       scene_box("follow", "follow the vehicle");
   if (in_plane) {
     if (parts.particles) html += scene_box("particles", "particles");
     if (parts.stages > 0) html += scene_box("plan", "plan") + scene_box("ghost", "model’s vehicle");
     if (has_moving && parts.stages > 0) html += scene_box("forecast", "forecasts");
-    html += scene_box("way", "way driven");
+    html += scene_box("way", "driven path");
   }
-  return html + "<button type=\"button\" class=\"whole\">Show all of it</button></div>\n" +
+  return html + "<button type=\"button\" class=\"whole\">Show all</button></div>\n" +
          "<div class=\"scene\"></div>\n" + note + "</figure>\n";
 }
 
@@ -137,7 +136,7 @@ std::string player(const Trace& trace) {
       "<button type=\"button\" id=\"back\" aria-label=\"One period back\">−1</button>\n"
       "<input type=\"range\" id=\"time\" min=\"0\" max=\"{}\" value=\"0\" step=\"{}\" "
       "aria-label=\"Time in seconds\"/>\n"
-      "<button type=\"button\" id=\"forward\" aria-label=\"One period on\">+1</button>\n"
+      "<button type=\"button\" id=\"forward\" aria-label=\"One period forward\">+1</button>\n"
       "<output id=\"clock\" for=\"time\">0 s</output>\n</div>\n",
       static_cast<double>(trace.steps.size()) * trace.scenario.time_step, trace.scenario.time_step);
 }
@@ -148,13 +147,13 @@ constexpr std::string_view kMoment =
 
 constexpr std::string_view kWhy =
     "<h3>What the plan pays for</h3>\n"
-    "<p class=\"note\">Parts of the plan’s expected cost: what is largest, the controller works "
-    "against most.</p>\n";
+    "<p class=\"note\">Parts of the plan’s expected cost; the largest matters most to the "
+    "controller.</p>\n";
 
 constexpr std::string_view kStageCharts =
     "<figure class=\"card\" id=\"stage-certificates\" hidden>\n<figcaption>Certificates of this "
     "plan, stage by stage</figcaption>\n<p class=\"note\">{} of the probability of being "
-    "unsafe at each stage; 10⁻⁹ and less at the foot.</p>\n</figure>\n"
+    "unsafe at each stage; values up to 10⁻⁹ are drawn at the bottom.</p>\n</figure>\n"
     "<figure class=\"card\" id=\"stage-budgets\" hidden>\n<figcaption>Error budget of this plan, "
     "stage by stage</figcaption>\n<p class=\"note\">Bound of the distance between the model’s law "
     "and "
@@ -190,7 +189,7 @@ std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeSce
   }
   if (parts.stages > 0) {
     const char* const what =
-        view.summary().no_bound.empty() ? "Upper bounds" : "Estimates that are no bounds";
+        view.summary().no_bound.empty() ? "Upper bounds" : "Estimates (not bounds)";
     html += "<div class=\"grid drive below\">\n" + fmt::format(kStageCharts, what) + "</div>\n";
   }
   return html +
@@ -201,8 +200,8 @@ std::string charts_html(const std::vector<Chart>& charts) {
   std::string html = "<h2>Along the drive</h2>\n";
   if (!charts.empty()) {
     html +=
-        "<p class=\"note needs-script\" hidden>Click for a moment, drag to enlarge, double-click "
-        "for all of it.</p>\n<div class=\"grid\" id=\"charts\">\n";
+        "<p class=\"note needs-script\" hidden>Click to select a moment, drag to zoom in, "
+        "double-click to zoom out.</p>\n<div class=\"grid\" id=\"charts\">\n";
     for (const Chart& chart : charts) html += chart_figure(chart);
     html += "</div>\n";
   }

@@ -263,9 +263,8 @@ std::string note_of(const Trace& trace, const VehicleShapes& vehicle) {
   if (vehicle.boxed() == 0) return note;
   if (!note.empty()) note += ' ';
   return note + fmt::format(
-                    "{} of its shapes have more triangles than a page should hold ({} in all), and "
-                    "are boxes "
-                    "here.",
+                    "{} of its shapes have more triangles than a page should hold ({} in total) "
+                    "and are drawn as boxes.",
                     vehicle.boxed(), VehicleShapes::kMostTriangles);
 }
 

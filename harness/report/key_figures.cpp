@@ -96,7 +96,7 @@ Tile unsafe_tile(const EpisodeView& view) {
   const Summary& summary = view.summary();
   constexpr const char* kHint = "true state at the control instants";
   if (!has_true_state(view)) {
-    return {.name = "Entered the unsafe set", .value = kNone, .hint = "no state is known"};
+    return {.name = "Entered the unsafe set", .value = kNone, .hint = "no known state"};
   }
   Verdict verdict = summary.collision ? Verdict::kBad : Verdict::kGood;
   if (summary.steps == 0 && !summary.collision) verdict = Verdict::kPlain;  // nothing was risked
@@ -146,10 +146,10 @@ Tile bound_tile(const Summary& summary, const std::string& name, double bound,
   if (summary.steps == 0) return tile;
   tile.value = format_bound(bound);
   if (!summary.no_bound.empty()) {
-    tile.hint = "no bound: see above";
+    tile.hint = "not a bound: see above";
     tile.verdict = Verdict::kWarn;
   } else if (!(bound < 1.0)) {
-    tile.hint += "; 1 or more says nothing";
+    tile.hint += "; uninformative at 1 or more";
     tile.verdict = Verdict::kWarn;
   }
   return tile;
@@ -168,7 +168,7 @@ Tile limit_tile(const Summary& summary, const std::string& name, const Certified
                    : fmt::format(", exceeded in {} of {} periods", risk.exceeded, summary.steps);
   tile.verdict = risk.exceeded == 0 ? Verdict::kGood : Verdict::kBad;
   if (!summary.no_bound.empty()) {
-    tile.hint += "; no bound: see above";
+    tile.hint += "; not a bound: see above";
     if (tile.verdict == Verdict::kGood) tile.verdict = Verdict::kWarn;
   }
   return tile;
@@ -183,8 +183,8 @@ void add_limit_tiles(const Summary& summary, std::vector<Tile>& tiles) {
     tiles.push_back(limit_tile(summary, "Plan risk", risk.plan, "largest sum over a plan"));
   }
   if (risk.mission.is_limited()) {
-    tiles.push_back(
-        limit_tile(summary, "Mission risk spent", risk.mission, "next steps along the drive"));
+    tiles.push_back(limit_tile(summary, "Mission risk spent", risk.mission,
+                               "sum of next-step certificates along the drive"));
   }
 }
 
@@ -218,14 +218,14 @@ Tile fallback_tile(const Summary& summary) {
   if (summary.steps == 0) return {.name = "Fallbacks", .value = kNone};
   return {.name = "Fallbacks",
           .value = fmt::format("{} of {}", summary.fallbacks, summary.steps),
-          .hint = "steps that kept the last plan, shifted by one",
+          .hint = "steps that kept the previous plan, shifted by one",
           .verdict = summary.fallbacks > 0 ? Verdict::kWarn : Verdict::kPlain};
 }
 
 Tile evaluations_tile(const Summary& summary) {
-  return {.name = "Optimiser’s evaluations, median",
+  return {.name = "Optimiser evaluations, median",
           .value = summary.steps == 0 ? kNone : format_short(summary.iterations_median),
-          .hint = "of cost and gradient, a step"};
+          .hint = "of cost and gradient, per step"};
 }
 
 Tile cost_tile(const Summary& summary) {
@@ -275,11 +275,10 @@ std::string safety_sentence(const EpisodeView& view) {
         fmt::format("The true state entered the unsafe set: first at {}.", seconds(*unsafe));
     if (view.scenario().stop_when_unsafe) return entered;
     return fmt::format(
-        "{} The drive went on after that (limit.stop_when_unsafe: false) and ended "
-        "after {}{}.",
-        entered, seconds(view.duration()), summary.time_to_target ? " at the target" : "");
+        "{} The drive continued (limit.stop_when_unsafe: false) and ended after {}{}.", entered,
+        seconds(view.duration()), summary.time_to_target ? " at the target" : "");
   }
-  return "The true state was outside of the unsafe set at every control instant.";
+  return "The true state was outside the unsafe set at every control instant.";
 }
 
 std::string outcome_html(const EpisodeView& view) {
@@ -297,7 +296,7 @@ std::string outcome_html(const EpisodeView& view) {
             escape_html(view.summary().no_bound) + ".</p>\n";
   }
   if (!trace.fault.empty()) {
-    html += "<p>The simulator's words:</p>\n<pre>" + escape_html(trace.fault) + "</pre>\n";
+    html += "<p>Error message:</p>\n<pre>" + escape_html(trace.fault) + "</pre>\n";
   }
   return html + "</section>\n";
 }
@@ -357,9 +356,8 @@ std::string mismatch_html(const EpisodeView& view) {
   if (summary.steps == 0) return "<p class=\"empty\">No step was made.</p>\n";
   if (is_the_model(view)) {
     return fmt::format(
-        "<p>The plant is the model: what differs is rounding, of at most {} in any state (root "
-        "mean "
-        "square).</p>\n",
+        "<p>The plant matches the model except for rounding, which is at most {} in any state "
+        "(root mean square).</p>\n",
         format_number(summary.mismatch_rmse.maxCoeff()));
   }
   std::string html =

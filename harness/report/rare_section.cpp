@@ -21,14 +21,12 @@ constexpr std::size_t kMostRareCommands = 5;  // per variant
 constexpr double kMostRareGap = 0.3;          // of a decade, below the smallest estimate
 constexpr const char* kRareNote =
     "The probability that a drive is unsafe at some control instant, estimated by splitting: "
-    "drives "
-    "that came near to the unsafe set are driven again, with other noise from where they came "
-    "near. "
-    "Each run gives an unbiased estimate. Limits are of 99 %, from how the runs differ. Worth: the "
-    "plain periods after which the share of unsafe drives is as sharp; gain: how many times as "
-    "many "
-    "they are as those that were driven. Certified: the mean of the sum of a drive's next-step "
-    "certificates, estimated by the same drives, which bounds the probability where they are "
+    "drives that came near the unsafe set are driven again from there, with different noise. Each "
+    "run gives an unbiased estimate. Limits are 99 % limits, from the spread of the runs. Worth: "
+    "the number of plain periods for which the share of unsafe drives is as precise; gain: the "
+    "ratio of that number to the periods driven. Certified: the mean of the sum of a drive's "
+    "next-step "
+    "certificates, estimated from the same drives, which bounds the probability where they are "
     "bounds.";
 
 bool looks_for_rare(const CampaignStatistics& statistics) {
@@ -58,7 +56,7 @@ Chart rare_chart(const VariantStatistics& variant, const RareStatistics& rare) {
               .y_label = "probability of an unsafe drive (–)",
               .y_scale = Scale::kLog,
               .least_shown = least_rare(rare)};
-  Series estimates{.name = "a run", .colour = kBlue, .mark = Mark::kPoints};
+  Series estimates{.name = "one run", .colour = kBlue, .mark = Mark::kPoints};
   for (std::size_t n = 0; n < rare.runs.size(); ++n) {
     estimates.x.push_back(static_cast<double>(n + 1));
     estimates.y.push_back(rare.runs[n].probability);
@@ -72,7 +70,7 @@ Chart rare_chart(const VariantStatistics& variant, const RareStatistics& rare) {
   mean.lower = {rare.interval.lower};
   mean.upper = {rare.interval.upper};
   chart.series = {std::move(estimates), std::move(mean)};
-  chart.rules.push_back({.name = variant.no_bound.empty() ? "certified" : "certified, no bound",
+  chart.rules.push_back({.name = variant.no_bound.empty() ? "certified" : "certified, not a bound",
                          .value = rare.certified});
   return chart;
 }
@@ -94,15 +92,15 @@ PageVerdict rare_verdict(const VariantStatistics& variant, const RareStatistics&
       rare.drives, rare.periods));
   if (std::isfinite(rare.worth_periods)) {
     verdict.sentences.push_back(
-        fmt::format("Plain drives would take {} periods to say as much, {} times as many.",
+        fmt::format("Plain drives would need {} periods to be as precise, {} times as many.",
                     format_short(rare.worth_periods), format_short(rare.gain())));
   }
   if (std::isfinite(rare.certified)) {
-    verdict.sentences.push_back(fmt::format("Certified of a drive: {}, {}.",
+    verdict.sentences.push_back(fmt::format("Certified for a drive: {}, {}.",
                                             format_short(rare.certified),
                                             exceeded ? "which is exceeded"
                                             : holds  ? "which is not refuted"
-                                                     : "which is no bound here"));
+                                                     : "which is not a bound here"));
   }
   return verdict;
 }
@@ -110,7 +108,7 @@ PageVerdict rare_verdict(const VariantStatistics& variant, const RareStatistics&
 std::string rare_rows_html(const CampaignStatistics& statistics) {
   PageTable table{.label = "Probability of an unsafe drive, by variant",
                   .heads = {"variant", "runs", "unsafe drive", "collision", "left bounds",
-                            "certified of a drive", "periods driven", "worth", "gain", "runs at 0"},
+                            "certified per drive", "periods driven", "worth", "gain", "runs at 0"},
                   .rows = {}};
   for (const VariantStatistics& variant : statistics.variants) {
     if (!variant.rare) continue;
@@ -144,8 +142,10 @@ std::string rare_commands(const CampaignStatistics& statistics) {
     }
   }
   if (items.empty()) return {};
-  return "<p class=\"note\">Some of the unsafe drives that were found, to be driven again in the "
-         "folder of this page, with video; its subfolder <code>rare</code> has more.</p>\n<ul>\n" +
+  return "<p class=\"note\">Some of the unsafe drives found. Run the commands in the folder of "
+         "this page to drive them again, with video; its subfolder <code>rare</code> has "
+         "more.</p>\n"
+         "<ul>\n" +
          items + "</ul>\n";
 }
 

@@ -23,15 +23,14 @@ constexpr std::size_t kPanelTitleLimit = 40;  // of a scenario's name, and of a 
 constexpr double kBelowOneDrive = 0.5;        // the axis begins at this fraction of the rate of one
                                               // drive
 constexpr const char* kTradeoffNote =
-    "Left and down is better. On the left what was observed; beside it what was certified, which "
-    "tells variants apart whose drives were never unsafe: the mean over drives of the sum of "
-    "next-step certificates. Of the model it bounds the share of unsafe drives, up to chance; of "
-    "another plant it does so only with a model error. Whiskers are 99 % intervals, of means by a "
-    "bootstrap. A variant without an unsafe drive stands at 0, "
-    "left of the break, "
-    "and its whisker ends at the highest rate that is compatible with that. Costs are means over "
-    "the drives that reached the target, since those of other drives do not compare: a variant "
-    "that reaches it less often may look cheaper.";
+    "Left and down is better. The left chart shows the observed risk; the one beside it shows the "
+    "certified risk, which distinguishes variants whose drives were never unsafe: the mean over "
+    "drives of the sum of next-step certificates. For the model it bounds the share of unsafe "
+    "drives, up to chance; for another plant only with a model error. Whiskers are 99 % intervals, "
+    "those of means by bootstrap. A variant without an unsafe drive stands at 0, left of the "
+    "break, and its whisker ends at the highest rate that is compatible with that. Costs are means "
+    "over the drives that reached the target, because those of other drives are not comparable: a "
+    "variant that reaches it less often may look cheaper.";
 
 /// Which value represents the risk of a variant.
 enum class RiskOf { kObserved, kCertified };
@@ -134,7 +133,7 @@ std::string no_bound_note(const CampaignStatistics& statistics, const TradeoffPa
     }
   }
   if (names.empty()) return {};
-  return all ? "NO BOUND of any variant." : "NO BOUND: " + names + ".";
+  return all ? "NO BOUND for any variant." : "NO BOUND: " + names + ".";
 }
 
 Chart panel_chart(const CampaignStatistics& statistics, const TradeoffPanel& panel, RiskOf risk) {
@@ -189,12 +188,12 @@ std::vector<Chart> tradeoff_charts(const CampaignStatistics& statistics) {
 
 std::string tradeoff_section(const CampaignStatistics& statistics) {
   if (statistics.tradeoff.empty()) return {};
-  PageTable table{.label = "Risk against cost, by variant",
-                  .heads = {"variant", "family", "drives", "reached", "timeout", "unsafe",
-                            "unsafe, share of drives", "certified of a drive, mean",
-                            "cost of those that reached, mean"},
-                  .rows = {},
-                  .text_columns = {1}};
+  PageTable table{
+      .label = "Risk against cost, by variant",
+      .heads = {"variant", "family", "drives", "reached", "timeout", "unsafe",
+                "unsafe, share of drives", "certified per drive, mean", "cost of arrivals, mean"},
+      .rows = {},
+      .text_columns = {1}};
   std::string charts;
   for (const Chart& chart : tradeoff_charts(statistics)) charts += chart_figure(chart);
   for (const TradeoffPanel& panel : statistics.tradeoff) {

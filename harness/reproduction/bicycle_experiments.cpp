@@ -69,10 +69,10 @@ ExperimentResult bicycle_by_points(Laboratory& laboratory) {
                      .caption = "Inputs and cost of the first drive of each.",
                      .panels = panels_along(by_points)}};
   result.remarks = {
-      "Blocks, speeds and noise are chosen here, as the thesis does not print them. With the "
-      "weights of "
-      "its Table B-3 most drives leave the safe set; scenario bicycle_square says which differ and "
-      "why. One of the seeds 0 to 49 draws a start below the least speed, and counts as unsafe."};
+      "Blocks, speeds and noise are chosen here, because the thesis does not print them. With the "
+      "weights of its Table B-3 most drives leave the safe set; scenario bicycle_square says which "
+      "differ and why. One of the seeds 0 to 49 draws a start below the minimum speed and counts "
+      "as unsafe."};
   return result;
 }
 

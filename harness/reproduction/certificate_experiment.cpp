@@ -54,11 +54,11 @@ void add_rows(const Case& turn, ExperimentResult& result) {
                              .column = fmt::format("{}, stage {}", turn.name, turn.stage)}});
   };
   row("truth", truth.rate,
-      fmt::format("{} samples; at least {:.3g} and at most {:.3g}, each but for a chance of {}",
+      fmt::format("{} samples; at least {:.3g} and at most {:.3g}, each wrong with probability {}",
                   turn.report.monte_carlo->samples, truth.limits.lower, truth.limits.upper,
                   kRateTail));
   row("as published (Eq. 4-4, Algorithms 3 and 4)", certificate.of("thesis"),
-      certificate.of("thesis") < truth.limits.lower ? "below the truth: no bound" : "");
+      certificate.of("thesis") < truth.limits.lower ? "below the truth: not a bound" : "");
   row("Algorithm 4, distance and radius right", linear_transport_at(turn.report, turn.stage),
       "a bound, but loose");
   row("C1, transport cost right too", certificate.of("c1"), "a bound");
@@ -66,7 +66,7 @@ void add_rows(const Case& turn, ExperimentResult& result) {
   row("C3, Gaussian surrogate", certificate.of("c3"), "a bound");
   row("C4, the same smoothed", certificate.of("c4"), "a bound");
   row("C5, C4 given what bends the motion most", certificate.of("c5"),
-      "a bound; the least of the five is in force");
+      "a bound; the smallest of the five is in force");
 }
 
 Chart chart_of(const Case& turn) {
@@ -120,7 +120,7 @@ ExperimentResult published_certificate(Laboratory& laboratory) {
       {.statement = "The certificate in force is never below the truth, at any stage of either",
        .holds =
            contradicted_stages(walls.report).empty() && contradicted_stages(block.report).empty(),
-       .evidence = fmt::format("{} samples, each limit but for a chance of {}",
+       .evidence = fmt::format("{} samples, each limit wrong with probability {}",
                                laboratory.truth_samples(), kRateTail)});
   const double published = certificate_at(block.report, block.stage).of("thesis");
   const SimulatedRate truth = truth_at(block.report, block.stage);
@@ -132,15 +132,15 @@ ExperimentResult published_certificate(Laboratory& laboratory) {
   result.figures = {
       {.file = "algorithm-4.svg",
        .title = "The published probability, bounds, and the truth",
-       .caption = "Left past walls alone, right with a block ahead. The truth is simulated: what "
-                  "is sure, but for a chance of 1e-6, is its lower limit.",
+       .caption = "Left: past walls alone; right: with a block ahead. The truth is simulated; its "
+                  "lower limit is wrong with probability 1e-6.",
        .panels = {chart_of(walls), chart_of(block)}}};
   result.remarks = {
-      "Algorithm 3 takes a norm over the dimensions where the least distance to a face is meant, "
-      "and leaves the obstacles out, and Eq. 4-4 leaves the noise out of the radius: what is "
-      "certified so can be below the truth. Algorithm 4 spends d · m against the radius, which is "
-      "right for W1: with a true distance and radius it is a bound, but a looser one than d² · m "
-      "against the radius squared gives."};
+      "Algorithm 3 takes a norm over the dimensions instead of the least distance to a face and "
+      "leaves the obstacles out, and Eq. 4-4 leaves the noise out of the radius, so its "
+      "certificates can be below the truth. Algorithm 4 spends d · m against the radius, which is "
+      "right for W1: with a correct distance and radius it is a bound, but a looser one than d² · "
+      "m against the radius squared."};
   return result;
 }
 

@@ -98,7 +98,7 @@ Series mean_series(const NamedSample& named, std::vector<double> EpisodeDigest::
 Chart mean_chart(const std::string& title, const std::vector<NamedSample>& samples,
                  std::vector<double> EpisodeDigest::*values) {
   Chart chart{.title = title,
-              .note = fmt::format("mean over those of {} drives that are under way",
+              .note = fmt::format("mean over those of the {} drives that are still under way",
                                   samples.front().sample->episodes.size()),
               .x_label = kTimeLabel,
               .y_label = "P(unsafe)",
@@ -184,7 +184,9 @@ Chart cost_chart(const std::vector<NamedSample>& samples) {
 Chart risk_chart(const std::string& title, const Sample& sample) {
   const std::vector<NextStepView> views = next_step_views(sample.first);
   Chart chart{.title = title,
-              .note = "the next step, first drive; as published is no bound, the others are",
+              .note =
+                  "next step of the first drive; the published value is not a bound, the "
+                  "others are",
               .x_label = kTimeLabel,
               .y_label = "P(unsafe)",
               .y_scale = Scale::kLog,

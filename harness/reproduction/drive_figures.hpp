@@ -22,7 +22,7 @@ struct NamedSample {
 
 /// Explains the ellipses on that map.
 inline constexpr const char* kMapCaption =
-    "Of the first drive, the belief and where the end of the plan was expected, every 12 periods.";
+    "The first drive: belief and expected end of the plan, every 12 periods.";
 
 /// Each input of the first drives over time, within its bounds. All samples are of the same system.
 [[nodiscard]] std::vector<Chart> input_charts(const std::vector<NamedSample>& samples);

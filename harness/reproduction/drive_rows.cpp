@@ -90,13 +90,13 @@ void add_drive_rows(const PublishedDrive& column, const Sample& sample, Experime
           sample, [](const EpisodeDigest& episode) { return episode.optimisation_s; })));
   row("largest P(unsafe) of a next step, the published way", "", column.unsafe,
       median_of_episodes(largest_by_episode(sample, &EpisodeDigest::published)),
-      "Algorithms 3 and 4 as printed: no bound");
+      "Algorithms 3 and 4 as printed: not a bound");
   row("largest P(unsafe) of a next step, C1", "", std::nullopt,
       median_of_episodes(largest_by_episode(sample, &EpisodeDigest::particles)),
-      "the published way made sound");
+      "the published method, made sound");
   row("largest P(unsafe) of a next step, certified", "", std::nullopt,
       median_of_episodes(largest_by_episode(sample, &EpisodeDigest::next_step)),
-      "a bound, the least known");
+      "a bound, the smallest known");
   row("drives that arrive and are never unsafe", "", std::nullopt,
       safe_arrivals(sample) / static_cast<double>(sample.episodes.size()),
       share_text(safe_arrivals(sample), sample.episodes.size()));

@@ -52,7 +52,8 @@ void add_plan_time_rows(const CorridorColumn& entry, const Sample& sample,
                          .unit = "s",
                          .published = entry.printed_plan_s,
                          .here = here,
-                         .note = "seconds a simulated second, by the table’s own totals",
+                         .note = "seconds per simulated second, according to the table’s own "
+                                 "totals",
                          .place = TablePlace{.table = "",
                                              .row = "optimisation time of a problem, as printed",
                                              .column = column.name}});
@@ -151,7 +152,7 @@ std::vector<ResultFigure> corridor_figures(const std::string& name, const Sample
            .panels = {drive_map("Open loop", open), drive_map("Closed loop", closed)}},
           {.file = name + "-inputs.svg",
            .title = "Inputs and cost",
-           .caption = "Of the first drive of each.",
+           .caption = "The first drive of each.",
            .panels = along},
           {.file = name + "-unsafe.svg",
            .title = "Probability of the unsafe set",
@@ -183,7 +184,7 @@ std::vector<ResultFigure> obstacle_figures(const std::vector<std::vector<const S
            .panels = maps},
           {.file = "figure-5-4-inputs.svg",
            .title = "Inputs and cost",
-           .caption = "Of the first drive of each.",
+           .caption = "The first drive of each.",
            .panels = along},
           {.file = "figure-5-4-unsafe.svg",
            .title = "Probability of the unsafe set at the next step",
@@ -230,9 +231,8 @@ ExperimentResult corridor_with_noise(Laboratory& laboratory) {
       "The corridor is only drawn in the thesis, so times to the target and probabilities are "
       "those of "
       "the layout chosen here (scenario dubins_turn) and can be compared by their order only. The "
-      "average optimisation times that the thesis prints are seconds a simulated second: with 0.1 "
-      "s a "
-      "period, its totals give a tenth of them a problem. Both are shown.",
+      "average optimisation times that the thesis prints are seconds per simulated second: with "
+      "0.1 s per period, its totals give a tenth of that per problem. Both are shown.",
       "The largest published probability is that of the first period, in which the belief is "
       "widest "
       "and the same in every drive: it says little about the drive. Bounds that hold for the law "
@@ -240,9 +240,8 @@ ExperimentResult corridor_with_noise(Laboratory& laboratory) {
       "For the same beliefs, plans with feedback are unsafe less often, as simulation shows, but "
       "are "
       "certified higher: in open loop the heading is exactly Gaussian and the surrogate's distance "
-      "known exactly, where feedback brings in the saturation of the input and products of heading "
-      "and "
-      "position, which are bounded less tightly."};
+      "known exactly, whereas feedback introduces the saturation of the input and products of "
+      "heading and position, which are bounded less tightly."};
   return result;
 }
 
@@ -294,18 +293,17 @@ ExperimentResult obstacles_by_solver(Laboratory& laboratory) {
         mean_by_episode(*samples[0][n], &EpisodeDigest::next_step),
         mean_by_episode(*samples[1][n], &EpisodeDigest::next_step)));
     result.claims.push_back(less_on_average(
-        fmt::format("L-BFGS is faster than SLSQP with {} points (s a problem)", kPoints[n]),
+        fmt::format("L-BFGS is faster than SLSQP with {} points (s per problem)", kPoints[n]),
         seconds_a_plan(*samples[1][n]), seconds_a_plan(*samples[0][n])));
   }
   result.figures = obstacle_figures(samples);
   result.remarks = {
       "The thesis does not say where its car starts. From the origin, as its Table B-1 says, the "
-      "target is 13.7 m away, which takes 9.1 s at least: its 7.1 to 8.2 s are those of another "
+      "target is 13.7 m away, which takes at least 9.1 s: its 7.1 to 8.2 s belong to another "
       "start.",
       "More points lower what is made from the points: the published probability and C1. The "
-      "certificate in force follows the law of the state by a Gaussian surrogate and does not "
-      "depend "
-      "on the number of points, but through the plan."};
+      "certificate in force follows the law of the state by a Gaussian surrogate and depends on "
+      "the number of points only through the plan."};
   return result;
 }
 

@@ -62,7 +62,7 @@ void add_drive(Laboratory& laboratory, const std::string& name, const std::strin
   result.figures.push_back(
       {.file = scenario + ".svg",
        .title = fmt::format("States, input and probability of the unsafe set: {}", name),
-       .caption = "Of the first drive.",
+       .caption = "The first drive.",
        .panels = panels});
 }
 
@@ -96,18 +96,16 @@ ExperimentResult cart_pole_upright(Laboratory& laboratory) {
   result.remarks = {kNothingPublished,
                     "The bounds of Table B-5 leave room for a swing-up, those of Appendix D for "
                     "keeping the pole upright; both are done. The weight of the force is not the "
-                    "published one, see "
-                    "the scenario cart_pole."};
+                    "published one; see the scenario cart_pole."};
   return result;
 }
 
 ExperimentResult scenarios_on_plants(Laboratory& laboratory) {
   ExperimentResult result;
   result.remarks = {
-      "The thesis drives its own models only. Here each drive is made on its model, and with the "
-      "same "
-      "constants on MuJoCo vehicles that the planner knows nothing of: joints with the same "
-      "equations, and cars on wheels whose steering and drive lag."};
+      "The thesis drives only its own models. Here each drive is made on its model and, with the "
+      "same constants, on MuJoCo vehicles unknown to the planner: joints with the same equations, "
+      "and cars on wheels whose steering and drive lag."};
   for (const PlantDrive& drive : drives()) {
     const Sample& analytic = laboratory.sample(drive.variant, laboratory.arrival_seeds());
     add_share(drive.name, "model", analytic, result);

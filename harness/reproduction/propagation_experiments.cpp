@@ -59,7 +59,7 @@ void add_turn_rows(const PredictionReport& report, const std::vector<controller:
                                  "{:.0f} s",
                                  time),
          .here = points.deviation() / sampled.deviation(),
-         .note = "of the points alone; what is lost within their cells is known",
+         .note = "of the points alone; the spread lost within their cells is known",
          .place = TablePlace{.table = "",
                              .row = "spread of the points over that of the samples",
                              .column = fmt::format("{:.0f} s", time)}});
@@ -183,7 +183,7 @@ ExperimentResult propagation_along_a_turn(Laboratory& laboratory) {
   result.figures = {
       {.file = "figure-4-1.svg",
        .title = "A belief along a turn",
-       .caption = "Ellipses of 50 and 95 %, from the mean and covariance of what is drawn.",
+       .caption = "50 and 95 % ellipses from the mean and covariance of what is drawn.",
        .panels = {turn_map("100 points", report.prediction.stages, period),
                   turn_map("2,000 samples", sampled, period)}}};
   return result;
@@ -228,7 +228,7 @@ ExperimentResult propagation_with_noise(Laboratory& laboratory) {
   result.figures = {
       {.file = "figure-4-2.svg",
        .title = "Positions after 5 steps with noise",
-       .caption = "Ellipses of 50 and 95 %, from the mean and covariance of what is drawn.",
+       .caption = "50 and 95 % ellipses from the mean and covariance of what is drawn.",
        .panels = maps}};
   return result;
 }

@@ -82,8 +82,7 @@ Quality quality_with(const QualityNoise& noise, Laboratory& laboratory) {
 
 void add_quality_rows(const QualityNoise& noise, const Quality& quality, ExperimentResult& result) {
   const bool printed = &noise == kQualityNoises.data();
-  const std::string note =
-      printed ? "the printed noise, with which the table cannot have been made" : "";
+  const std::string note = printed ? "the printed noise, which cannot have produced the table" : "";
   for (int k = 0; k < kQualitySteps; ++k) {
     const auto step = static_cast<std::size_t>(k);
     const auto row = [&](const char* what, std::optional<double> published,
@@ -106,12 +105,12 @@ void add_quality_rows(const QualityNoise& noise, const Quality& quality, Experim
       {.quantity = fmt::format("W2, step {}, 100 samples, noise {}", last, noise.name),
        .published = kPublishedFew.back(),
        .here = quality.few.col(last).cwiseSqrt().mean(),
-       .note = "the distance itself, beside what the thesis calls one"});
+       .note = "the distance itself, next to what the thesis calls one"});
   result.rows.push_back(
       {.quantity = fmt::format("W2, step {}, 100 points, noise {}", last, noise.name),
        .published = kPublishedPointsDistance.back(),
        .here = quality.thesis.col(last).cwiseSqrt().mean(),
-       .note = "the distance itself, beside what the thesis calls one"});
+       .note = "the distance itself, next to what the thesis calls one"});
 }
 
 /// The claim that `squares` beat the samples at every step.
@@ -250,10 +249,9 @@ ExperimentResult prediction_quality(Laboratory& laboratory) {
       "distance grows like √k: they are W2², not W2 as its caption says.",
       "The printed noise diag(0.01, 0.01, 0.001) does not give the table either; equal noise of "
       "0.015 to 0.02 in all three states does, in both columns. All are shown.",
-      "Distances add metres and radians as they are, so points that are few are spent where the "
-      "spread is wide, on the position: of the heading, the thesis’s product keeps two values "
-      "after "
-      "5 steps (Fig. 5-1, right)."};
+      "Distances add metres and radians unscaled, so a small number of points is spent where the "
+      "spread is wide, on the position: the thesis’s product keeps only two values of the heading "
+      "after 5 steps (Fig. 5-1, right)."};
   return result;
 }
 

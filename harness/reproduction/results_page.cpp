@@ -119,7 +119,7 @@ std::string results_page(const Reproduction& reproduction) {
   std::string html = "<h1>" + title + "</h1>\n";
   html += fmt::format("<p class=\"kicker\">{}</p>\n", escape_html(circumstances(reproduction)));
   if (!reproduction.complete) {
-    html += "<p class=\"outcome\">Not all that was asked for is here yet.</p>\n";
+    html += "<p class=\"outcome\">Not all of the requested experiments have finished.</p>\n";
   }
   html += contents(reproduction);
   for (const ExperimentResult& experiment : reproduction.experiments) {

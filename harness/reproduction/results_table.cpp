@@ -183,7 +183,7 @@ std::string table_number(std::optional<double> value) {
 }
 
 std::string circumstances(const Reproduction& reproduction) {
-  return fmt::format("{}, {} cores, {}; {} seeds a drive, {} threads; {:.0f} s in all",
+  return fmt::format("{}, {} cores, {}; {} seeds per drive, {} threads; {:.0f} s in total",
                      printable(reproduction.machine.processor), reproduction.machine.cores,
                      reproduction.machine.compiler, reproduction.seeds, reproduction.threads,
                      reproduction.seconds);

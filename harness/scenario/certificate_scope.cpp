@@ -20,15 +20,16 @@ bool has_feedback(const Scenario::Controller& controller) {
 std::string why_no_bound(const Scenario& scenario) {
   if (scenario.model.own && !scenario.model.own->differentiable) {
     return "the library of " + scenario.model.system +
-           " gives steps without derivatives: plans use finite differences, and certificates say 1";
+           " provides no derivatives: plans use finite differences, and certificates are 1";
   }
   for (const controller::Obstacle& obstacle : scenario.safe_set.obstacles) {
     if (!obstacle.motion || obstacle.motion->yields == 0.0) continue;
-    return "an obstacle waits for the vehicle (motion.yields), and certificates are for one that "
+    return "an obstacle waits for the vehicle (motion.yields), but certificates assume that it "
            "does not";
   }
   if (scenario.disturbance.sensor.isZero(0.0) || !has_feedback(scenario.controller)) return {};
-  return "with measurement noise (disturbance.sensor) the feedback acts on what is seen";
+  return "with measurement noise (disturbance.sensor), the feedback acts on what is observed, not "
+         "on the true state";
 }
 
 }  // namespace qsmpc::harness

@@ -23,7 +23,7 @@ constexpr const char* kKey = "model.library";
 /// The loader's error message without the path at its beginning.
 std::string loader_words(const std::string& path) {
   const char* const words = dlerror();
-  std::string text = words == nullptr ? "an unknown trouble" : words;
+  std::string text = words == nullptr ? "an unknown error" : words;
   if (text.starts_with(path + ": ")) text.erase(0, path.size() + 2);
   return text;
 }
@@ -37,13 +37,13 @@ DynamicsLibrary::DynamicsLibrary(std::string path, void* handle)
   if (function == nullptr) {
     dlclose(handle_);
     refuse(path_ + " without the symbol " QSMPC_DYNAMICS_SYMBOL,
-           "a library with QSMPC_REGISTER_DYNAMICS in it");
+           "a library that contains QSMPC_REGISTER_DYNAMICS");
   }
   table_ = function();
   const std::uint32_t version = table_ == nullptr ? 0 : table_->version;
   if (version != QSMPC_DYNAMICS_VERSION) {
     dlclose(handle_);
-    refuse(fmt::format("{} for version {} of the table of systems", path_, version),
+    refuse(fmt::format("{} for version {} of the system table", path_, version),
            fmt::format("version {}: build it with the headers of this program",
                        QSMPC_DYNAMICS_VERSION));
   }
@@ -64,10 +64,10 @@ const qsmpc_system& DynamicsLibrary::entry(const std::string& name) const {
     if (name == table_->systems[i]->name) return *table_->systems[i];
   }
   const std::vector<std::string> known = names();
-  throw InputError(
-      {.key = "model.system",
-       .found = name,
-       .expected = known.empty() ? "a library with a system in it" : expected_names(name, known)});
+  throw InputError({.key = "model.system",
+                    .found = name,
+                    .expected = known.empty() ? "a library that contains a system"
+                                              : expected_names(name, known)});
 }
 
 models::EquationSystem DynamicsLibrary::system(const std::string& name) const {

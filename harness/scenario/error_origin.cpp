@@ -42,17 +42,19 @@ void read_model(Section& section, const ModelErrorContext& context, Scenario::Er
     }
     origin.parameters[name] = parameters.number(name, value);
     if (!is_same(origin.parameters[name], value)) {
-      parameters.note(name,
-                      fmt::format("{}, the model's: the error was measured of another one", value));
+      parameters.note(
+          name,
+          fmt::format("{}, the model's value: the error was measured with another one", value));
     }
   }
   parameters.refuse_unread();
   origin.time_step = number_if_there(section, "time_step", kPositive);
   if (origin.time_step && context.time_step > 0.0 &&
       !is_same(*origin.time_step, context.time_step)) {
-    section.note("time_step", fmt::format("{}, the scenario's: the error was measured in periods "
-                                          "of another length",
-                                          context.time_step));
+    section.note(
+        "time_step",
+        fmt::format("{}, the scenario's value: the error was measured with another control period",
+                    context.time_step));
   }
 }
 
@@ -80,38 +82,36 @@ KeyDescription deviation(const char* name) {
 }
 
 KeyDescription plant_part() {
-  return {
-      .name = "plant",
-      .values = {MappingValue{
-          {{.name = "kind",
-            .values = {NameValue{plant_kind_names()}},
-            .words = "`analytic` or `mujoco`; another plant than the scenario's is warned of, here "
-                     "and below",
-            .fallback_words = kUnknown},
-           {.name = "mjcf",
-            .values = {TextValue{}},
-            .words = "name of its file",
-            .fallback_words = kUnknown},
-           {.name = "digest",
-            .values = {TextValue{.longest = kLongestDigest}},
-            .words = "of the model that this file compiles to",
-            .fallback_words = kUnknown},
-           {.name = "time_step",
-            .values = {NumberValue{kPositive}},
-            .words = "the simulator's, where the scenario sets it",
-            .unit = "s",
-            .fallback_words = "the file's"},
-           {.name = "solid",
-            .values = {FlagValue{}},
-            .words = "whether walls and obstacles stood in its way",
-            .fallback = "false"}}}}};
+  return {.name = "plant",
+          .values = {MappingValue{{{.name = "kind",
+                                    .values = {NameValue{plant_kind_names()}},
+                                    .words = "`analytic` or `mujoco`; a difference from the "
+                                             "scenario's plant causes a warning, here and below",
+                                    .fallback_words = kUnknown},
+                                   {.name = "mjcf",
+                                    .values = {TextValue{}},
+                                    .words = "name of its MuJoCo file",
+                                    .fallback_words = kUnknown},
+                                   {.name = "digest",
+                                    .values = {TextValue{.longest = kLongestDigest}},
+                                    .words = "digest of the model that this file compiles to",
+                                    .fallback_words = kUnknown},
+                                   {.name = "time_step",
+                                    .values = {NumberValue{kPositive}},
+                                    .words = "the simulator's time step, if the scenario sets it",
+                                    .unit = "s",
+                                    .fallback_words = "the file's"},
+                                   {.name = "solid",
+                                    .values = {FlagValue{}},
+                                    .words = "whether walls and obstacles were solid",
+                                    .fallback = "false"}}}}};
 }
 
 KeyDescription disturbance_part() {
   return {.name = "disturbance",
           .values = {MappingValue{{{.name = "kind",
                                     .values = {NameValue{disturbance_kind_names()}},
-                                    .words = "how it got the noise: `state` or `force`",
+                                    .words = "how the noise acted on it: `state` or `force`",
                                     .fallback_words = kUnknown},
                                    deviation("friction"),
                                    deviation("mass"),
@@ -139,23 +139,25 @@ std::string step_words(const std::optional<double>& step) {
 }  // namespace
 
 KeyDescription error_origin_key() {
-  return {.name = kOriginKey,
-          .values = {MappingValue{
-              {{.name = "parameters",
-                .values = {MappingValue{{{.name = "PARAMETER",
-                                          .family = NameFamily::kParameters,
-                                          .values = {NumberValue{}},
-                                          .words = "a constant of the system that it was measured "
-                                                   "for; another one is refused",
-                                          .unit = "of the constant",
-                                          .fallback_words = kUnknown}}}}},
-               {.name = "time_step",
-                .values = {NumberValue{kPositive}},
-                .words = "the control period; another one is refused",
-                .unit = "s",
-                .fallback_words = kUnknown},
-               plant_part(),
-               disturbance_part()}}}};
+  return {
+      .name = kOriginKey,
+      .values = {MappingValue{
+          {{.name = "parameters",
+            .values = {MappingValue{
+                {{.name = "PARAMETER",
+                  .family = NameFamily::kParameters,
+                  .values = {NumberValue{}},
+                  .words =
+                      "a constant of the system that it was measured for; another value is refused",
+                  .unit = "of the constant",
+                  .fallback_words = kUnknown}}}}},
+           {.name = "time_step",
+            .values = {NumberValue{kPositive}},
+            .words = "the control period, {range}; another one is refused",
+            .unit = "s",
+            .fallback_words = kUnknown},
+           plant_part(),
+           disturbance_part()}}}};
 }
 
 std::optional<Scenario::ErrorOrigin> read_error_origin(Section& section,

@@ -127,21 +127,22 @@ std::vector<const GroundGeom*> chosen_by_group(const GeomChoice& choice) {
 }  // namespace
 
 std::vector<KeyDescription> mjcf_obstacle_keys() {
-  return {{.name = kGeoms,
-           .values = {list_of_values(TextValue{.longest = kLongestGeomName, .what = "a name"},
-                                     {.least = 1, .once = true})},
-           .words = "names of geoms of `plant.mjcf` that are fixed to the world; this or `group`",
-           .fallback_words = "none"},
-          {.name = kGroup,
-           .values = {WholeValue{0, kLastGroup}},
-           .words = "all geoms of this group of MuJoCo's that are fixed to the world, but level "
-                    "planes",
-           .fallback_words = "none"},
-          {.name = kHeight,
-           .values = {NumberValue{kPositive}},
-           .words = "below which a geom must begin to stand in the way, {range}",
-           .unit = "m",
-           .fallback_words = "any"}};
+  return {
+      {.name = kGeoms,
+       .values = {list_of_values(TextValue{.longest = kLongestGeomName, .what = "a name"},
+                                 {.least = 1, .once = true})},
+       .words =
+           "names of geoms of `plant.mjcf` that are fixed to the world; either this or `group`",
+       .fallback_words = "none"},
+      {.name = kGroup,
+       .values = {WholeValue{0, kLastGroup}},
+       .words = "all geoms of this MuJoCo group that are fixed to the world, except level planes",
+       .fallback_words = "none"},
+      {.name = kHeight,
+       .values = {NumberValue{kPositive}},
+       .words = "height below which a geom must begin in order to be an obstacle, {range}",
+       .unit = "m",
+       .fallback_words = "any"}};
 }
 
 std::vector<controller::Obstacle> read_mjcf_obstacles(Section& section, const std::string& mjcf,
@@ -168,10 +169,10 @@ std::vector<controller::Obstacle> read_mjcf_obstacles(Section& section, const st
       obstacles.emplace_back(*geom->shape);
     }
   } catch (const InputError& error) {
-    section.note_here("a MuJoCo XML file as plant.mjcf that can be read", error.what());
+    section.note_here("a readable MuJoCo XML file as plant.mjcf", error.what());
   }
   if (obstacles.size() > reading.most) {
-    section.note_here(fmt::format("at most {} obstacles with the others", kMostObstacles),
+    section.note_here(fmt::format("at most {} obstacles including the others", kMostObstacles),
                       fmt::format("{} geoms", obstacles.size()));
   }
   return obstacles;

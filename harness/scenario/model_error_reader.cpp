@@ -37,7 +37,7 @@ std::optional<Eigen::VectorXd> read_norms(Section& section, const std::string& k
   if (!norms) return std::nullopt;
   for (Eigen::Index i = 0; i < least.size(); ++i) {
     if ((*norms)[i] >= (1.0 - kErrorRounding) * least[i]) continue;
-    section.note(key, expected, fmt::format("{} as number {}", (*norms)[i], i + 1));
+    section.note(key, expected, fmt::format("{} at position {}", (*norms)[i], i + 1));
     return std::nullopt;
   }
   return norms;
@@ -156,13 +156,13 @@ std::vector<KeyDescription> bounds_keys() {
   const VectorValue norms{.range = kNotNegative};
   return {{.name = "rms",
            .values = {norms},
-           .words = "*n* numbers {range}, the root mean square of each state's error in a period, "
-                    "less the offset",
+           .words = "*n* numbers {range}, the root mean square of each state's error per period, "
+                    "without the offset",
            .unit = "of the state",
            .required = true},
           {.name = "offset",
            .values = {VectorValue{}},
-           .words = "*n* numbers *m*, what the plant adds in every period on every path; the norms "
+           .words = "*n* numbers *m* that the plant adds in every period on every path; the norms "
                     "are of *e* − *m*",
            .unit = "of the state",
            .fallback_words = "zero"},
@@ -178,9 +178,8 @@ std::vector<KeyDescription> bounds_keys() {
            .fallback_words = "unknown"},
           {.name = "radius",
            .values = {NumberValue{kNotNegative}},
-           .words = "bound, {range}, of the root mean square of the whole error, offset included, "
-                    "at least the "
-                    "norm of \\|`offset`\\| + `rms`, that C1 and C2 use instead",
+           .words = "bound on the root mean square of the whole error, offset included; {range} "
+                    "and at least the norm of \\|`offset`\\| + `rms`; C1 and C2 use it instead",
            .unit = "norm of the states",
            .fallback_words = "that norm"}};
 }
@@ -191,10 +190,9 @@ std::vector<KeyDescription> model_error_keys() {
   std::vector<KeyDescription> keys = bounds_keys();
   keys.push_back({.name = "first",
                   .values = {list_of_values(MappingValue{bounds_keys()}, {.most = kMostPeriods})},
-                  .words =
-                      "a list of mappings with the keys above: of the first, second, … period of a "
-                      "drive; the keys beside it are those of all later periods",
-                  .fallback_words = "every period is alike"});
+                  .words = "a list of mappings with the keys above, for the first, second, … "
+                           "period of a drive; the keys beside it apply to all later periods",
+                  .fallback_words = "all periods are alike"});
   keys.push_back({.name = "mean",
                   .values = {VectorValue{}},
                   .words = "*n* numbers, for information",
@@ -227,8 +225,8 @@ std::optional<StatedModelError> read_model_error(Section& root, Problems& proble
   if (root.is_override(kErrorKey) && !fs::is_regular_file(path, error)) path = path_from("", name);
   if (!name.empty() && fs::is_regular_file(path, error)) return read_file(path, problems, context);
   root.note(kErrorKey,
-            "a mapping, or the path of a YAML file from the scenario's folder, or with --set from "
-            "the working one",
+            "a mapping, or the path of a YAML file relative to the scenario's folder or, with "
+            "--set, to the working folder",
             "no file " + name);
   return std::nullopt;
 }

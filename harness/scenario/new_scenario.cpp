@@ -10,15 +10,15 @@ namespace {
 // Lengths in m, angles in rad, times in s.
 constexpr const char* kText =
     R"(# A car at constant speed finds its way around a block. To drive it: qsmpc run THIS_FILE
-# Lengths are in m, angles in rad, times in s. docs/scenario.md explains every key; what is not
-# written here is at its default ("qsmpc run" leaves all of them in scenario.yaml).
+# Lengths are in m, angles in rad, times in s. docs/scenario.md explains every key; keys not
+# written here have their defaults ("qsmpc run" writes all of them to scenario.yaml).
 name: {name}
 description: A car drives around a block to its target
 
 # What the planner believes: a name from "qsmpc list systems", and its constants.
 model: {{system: dubins, speed: 1.5}}
-# What is driven: a MuJoCo model, shipped or a path from this file. "qsmpc doctor THIS_FILE" holds
-# it against the model. For the planner's model itself: {{kind: analytic}}
+# What is driven: a MuJoCo model, shipped or a path from this file. "qsmpc doctor THIS_FILE"
+# compares it with the model. For the planner's model itself: {{kind: analytic}}
 plant: {{kind: mujoco, mjcf: dubins_car.xml}}
 time_step: 0.1
 
@@ -40,12 +40,12 @@ target: {{state: [8, 5, 0], radius: 0.5}}
 risk: {{plan: 0.02}}
 
 controller:
-  horizon: 12                  # periods that are planned ahead
+  horizon: 12                  # periods planned ahead
   policy: closed_loop          # feedback about the plan; or open_loop
   quantisation: {{state: 30, noise: 30, compressed: 30}}   # points; or auto: as few as will do
   cost: {{state: [60, 60, 1], input: [2], terminal: [60, 60, 5]}}   # weights, diagonals
 
-limit: {{steps: 150}}            # control periods, after which the drive ends
+limit: {{steps: 150}}            # control periods after which the drive ends
 video: {{camera: chase}}         # or top, fixed, split
 )";
 

@@ -59,7 +59,7 @@ class GeoJson {
     const std::size_t count = object.list_size(key);
     if (count == 0 && object.tree(key) != nullptr &&
         object.tree(key)->kind == YamlNode::Kind::kList) {
-      object.note(key, "at least one, of which an obstacle is made", "an empty list");
+      object.note(key, "at least one that becomes an obstacle", "an empty list");
     }
     for (std::size_t i = 0; i < count; ++i) {
       Section item = object.item(key, i);
@@ -104,8 +104,8 @@ class GeoJson {
     if (!rings->is_list() || rings->node.items.empty()) return note(*rings, "a list of rings");
     if (rings->node.items.size() > 1) {
       return note(rings->item(1),
-                  "one ring: cut a polygon with a hole into polygons without, e.g. one on either "
-                  "side of a line through the hole",
+                  "one ring: cut a polygon with a hole into polygons without holes, e.g. one on "
+                  "either side of a line through the hole",
                   "a hole");
     }
     const PlacedNode ring = rings->item(0);
@@ -165,7 +165,8 @@ class GeoJson {
 
   void add(const PlacedNode& from, controller::PlanarShape shape) {
     if (obstacles_.size() == most_) {
-      note(from, fmt::format("at most {} obstacles with those of the scenario", kMostObstacles),
+      note(from,
+           fmt::format("at most {} obstacles including those of the scenario", kMostObstacles),
            "one more");
     }
     if (obstacles_.size() <= most_) obstacles_.emplace_back(std::move(shape));
@@ -201,7 +202,7 @@ std::vector<Obstacle> obstacles_in(const YamlNode& tree, const ObstacleReading& 
   }
   Section section(tree, reading.problems);
   if (!has_plane(reading.system)) {
-    section.note(kType, "a list of boxes, as the system has no position in the plane");
+    section.note(kType, "a list of boxes, because the system has no position in the plane");
     return {};
   }
   GeoJson document(reading.problems, reading.most);

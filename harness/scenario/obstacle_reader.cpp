@@ -50,13 +50,14 @@ std::optional<Obstacle> read_item(Section& item, const ObstacleReading& reading)
   const std::vector<std::string> shapes = named_shapes(item, states);
   const bool moves = item.tree(kMotionKey) != nullptr;
   if (shapes.empty() && moves) {
-    item.note(kMotionKey, fmt::format("none without one of the shapes {}, as only these move",
-                                      fmt::join(shape_names(), ", ")));
+    item.note(kMotionKey,
+              fmt::format("none without one of the shapes {}, because only these can move",
+                          fmt::join(shape_names(), ", ")));
   }
   if (shapes.empty()) return read_box(item, reading.system);
   const std::string& name = shapes.front();
   if (!has_plane(reading.system)) {
-    item.note(name, fmt::format("intervals of {}, as the system has no position in the plane",
+    item.note(name, fmt::format("intervals of {}, because the system has no position in the plane",
                                 fmt::join(coordinate_names(states), ", ")));
     return std::nullopt;
   }

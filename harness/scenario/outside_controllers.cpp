@@ -20,7 +20,7 @@ const std::vector<OutsideControllerEntry>& outside_controllers() {
        .summary = "a shared library with the C interface (controller.library)"},
       {.name = kObjectController,
        .summary =
-           "an object in Python or C++ of the program that drives; not from the command line"},
+           "a Python or C++ object of the calling program; not available from the command line"},
   };
   return table;
 }

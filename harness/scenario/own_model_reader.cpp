@@ -169,8 +169,7 @@ void read_equations(ScenarioReading& reading, Section& model) {
   for (const models::SystemEntry& entry : models::systems()) {
     if (entry.name != system.name) continue;
     model.note("system",
-               "a name that no system of the program has, as the model has its own "
-               "equations");
+               "a name that no built-in system has, because the model has its own equations");
   }
   model.refuse_unread();
   if (reading.problems.size() != before) return;
@@ -205,14 +204,15 @@ void check_described(Section& model, const EquationSystem& said, const EquationS
                        coordinate_names(said.inputs) == coordinate_names(system.inputs);
   if (!is_same) {
     model.note("states",
-               "those of the library's system now: the file was written with another one");
+               "the states and inputs of the library's current system: the file was written with "
+               "another one");
   }
 }
 
 std::string library_path(const ScenarioReading& reading, Section& model) {
   std::string name = model.text(kLibrary, "", kLongestPath);
   if (name.empty()) {
-    model.note(kLibrary, "a shared library, not empty");
+    model.note(kLibrary, "the path of a shared library");
     return "";
   }
   for (const std::string& folder : {reading.lookup.folder, std::string()}) {
@@ -270,7 +270,7 @@ void load(ScenarioReading& reading, Section& model, const EquationSystem& said) 
     const std::vector<std::string> names = library->names();
     if (!model.has("system") && names.size() != 1) {
       return model.note(
-          "system", names.empty() ? "a library with a system in it" : expected_names("", names));
+          "system", names.empty() ? "a library that contains a system" : expected_names("", names));
     }
     EquationSystem system = library->system(model.has("system") ? said.name : names.front());
     read_given_parameters(model, system);
@@ -282,7 +282,7 @@ void load(ScenarioReading& reading, Section& model, const EquationSystem& said) 
     const bool is_system = error.where().key == "model.system";
     model.note(is_system ? "system" : kLibrary, error.where().expected, error.where().found);
   } catch (const std::invalid_argument& error) {
-    model.note("parameters", std::string("what the system accepts: ") + error.what());
+    model.note("parameters", std::string("a value that the system accepts: ") + error.what());
   }
 }
 
@@ -290,7 +290,7 @@ void read_library(ScenarioReading& reading, Section& model) {
   const std::size_t before = reading.problems.size();
   reading.scenario.model.library = library_path(reading, model);
   for (const char* key : {"define", "equations", "time", "integrator", "substeps"}) {
-    if (model.has(key)) model.note(key, "nothing, as the system is from model.library");
+    if (model.has(key)) model.note(key, "nothing, because the system comes from model.library");
   }
   Section probe = model;
   EquationSystem said = read_described(probe);
@@ -299,7 +299,7 @@ void read_library(ScenarioReading& reading, Section& model) {
   if (reading.problems.size() != before) return;
   if (reading.lookup.must_exist) return load(reading, model, said);
   if (said.states.empty()) {
-    return model.note("states", "those of the library's system, as it is not loaded");
+    return model.note("states", "those of the library's system, because the library is not loaded");
   }
   reading.dynamics = std::make_unique<DescribedDynamics>(models::description_of(said));
   take(reading, std::move(said));

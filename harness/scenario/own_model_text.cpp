@@ -85,12 +85,12 @@ KeyDescription coordinate_key(const char* name, bool is_input) {
                        .fallback_words = "none"},
                       {.name = "angle",
                        .values = {FlagValue{}},
-                       .words = "whether values 2π apart mean the same",
+                       .words = "whether values 2π apart are equivalent",
                        .fallback = "false"}}};
   if (is_input) {
     parts.keys.push_back({.name = "bounds",
                           .values = {IntervalValue{.finite = true}},
-                          .words = "`[lower, upper]`, what it may be",
+                          .words = "`[lower, upper]`, its bounds",
                           .unit = "of the input",
                           .required = true});
     return {.name = name, .family = NameFamily::kFree, .values = {std::move(parts)}};
@@ -131,16 +131,16 @@ KeyDescription parameter_key() {
 std::vector<KeyDescription> integration_keys() {
   return {{.name = "time",
            .values = {NameValue{{"discrete", "continuous"}}},
-           .words = "whether an equation is of the state after a control period (`discrete`) or of "
-                    "its derivative by time (`continuous`)",
+           .words = "whether an equation gives the state after a control period (`discrete`) or "
+                    "its time derivative (`continuous`)",
            .fallback = "discrete"},
           {.name = "integrator",
            .values = {NameValue{{"euler", "rk4"}}},
-           .words = "of continuous equations: `euler`, or `rk4`, the classical Runge-Kutta method",
+           .words = "for continuous equations: `euler`, or `rk4`, the classical Runge-Kutta method",
            .fallback = "rk4"},
           {.name = "substeps",
            .values = {WholeValue{1, models::kMostSubsteps}},
-           .words = "its steps in a control period",
+           .words = "its steps per control period",
            .fallback = "1"}};
 }
 
@@ -165,9 +165,8 @@ std::vector<KeyDescription> own_model_keys() {
   std::vector<KeyDescription> keys = {
       {.name = "library",
        .values = {TextValue{.what = "a shared library"}},
-       .words =
-           "shared library that the system is from, relative to the scenario's folder: its code "
-           "is run",
+       .words = "shared library that contains the system, relative to the scenario's folder: its "
+                "code is executed",
        .see = "[own dynamics](dynamics.md#in-c)",
        .fallback_words = "none"},
       of_names("states", coordinate_key("STATE", false),
@@ -178,14 +177,13 @@ std::vector<KeyDescription> own_model_keys() {
                "constants of a system of your own: a number each, or `{value: …, unit: …}`"),
       of_names("define", formula_key("NAME"), "auxiliary formulas, which may use each other"),
       of_names("equations", formula_key("STATE"),
-               "a formula for each state, of states, inputs, parameters, definitions, `time_step` "
-               "and `pi`")};
+               "a formula for each state in terms of states, inputs, parameters, definitions, "
+               "`time_step` and `pi`")};
   for (KeyDescription& key : integration_keys()) keys.push_back(std::move(key));
   keys.push_back({.name = "position",
                   .values = {list_of_values(TextValue{.longest = kLongestName}, {2, 2})},
-                  .words =
-                      "two states: the position in the plane, which maps, obstacles' shapes and "
-                      "footprints need",
+                  .words = "two states: the position in the plane, required by maps, obstacle "
+                           "shapes and footprints",
                   .fallback_words = "none"});
   keys.push_back({.name = "heading",
                   .values = {TextValue{.longest = kLongestName}},
@@ -193,7 +191,7 @@ std::vector<KeyDescription> own_model_keys() {
                   .fallback_words = "none"});
   keys.push_back({.name = "derivatives",
                   .values = {FlagValue{}},
-                  .words = "in resolved scenarios: `false` where a library gives steps alone",
+                  .words = "in resolved scenarios: `false` if a library provides no derivatives",
                   .fallback = "true"});
   return keys;
 }

@@ -69,7 +69,7 @@ class PathLines {
     if (width_ == 0) width_ = static_cast<Eigen::Index>(words.size());
     if (static_cast<Eigen::Index>(words.size()) != width_) {
       return note(number, fmt::format("a row of {} numbers", words.size()),
-                  fmt::format("{} numbers, as in the rows before", width_));
+                  fmt::format("{} numbers, as in the previous rows", width_));
     }
     if (lines_.size() == kMostPathRows) {
       return note(number, "one more", fmt::format("at most {} points", kMostPathRows));
@@ -109,7 +109,7 @@ bool check_path_rows(const Eigen::MatrixXd& rows, bool closed, const RowNote& no
   const Eigen::Index least = closed ? 3 : 2;
   if (rows.rows() < least) {
     note(0, fmt::format("{} points", rows.rows()),
-         fmt::format("at least {} points, of {} path", least, closed ? "a closed" : "an open"));
+         fmt::format("at least {} points for {} path", least, closed ? "a closed" : "an open"));
     return false;
   }
   const Eigen::Index pairs = closed ? rows.rows() : rows.rows() - 1;
@@ -128,7 +128,7 @@ bool check_path_rows(const Eigen::MatrixXd& rows, bool closed, const RowNote& no
     if (i == pairs) continue;
     const auto next = rows.row((i + 1) % rows.rows());
     if ((next.head<2>() - row.head<2>()).norm() >= kLeastApart) continue;
-    note((i + 1) % rows.rows(), "the point before once more", "another point");
+    note((i + 1) % rows.rows(), "the previous point again", "another point");
     return false;
   }
   return true;

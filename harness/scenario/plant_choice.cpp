@@ -26,7 +26,7 @@ const std::vector<ShippedPlant>& shipped_plants() {
       {.name = "mujoco_planar",
        .system = "dubins",
        .mjcf = "dubins_planar.xml",
-       .summary = "the Dubins car in joints of MuJoCo, its speeds held by servos"},
+       .summary = "the Dubins car built from MuJoCo joints, its speeds held by servos"},
       {.name = "mujoco_car",
        .system = "dubins",
        .mjcf = "dubins_car.xml",
@@ -34,7 +34,7 @@ const std::vector<ShippedPlant>& shipped_plants() {
       {.name = "mujoco_planar",
        .system = "dubins_rk4",
        .mjcf = "dubins_planar.xml",
-       .summary = "the Dubins car in joints of MuJoCo, its speeds held by servos"},
+       .summary = "the Dubins car built from MuJoCo joints, its speeds held by servos"},
       {.name = "mujoco_car",
        .system = "dubins_rk4",
        .mjcf = "dubins_car.xml",
@@ -42,7 +42,7 @@ const std::vector<ShippedPlant>& shipped_plants() {
       {.name = "mujoco_planar",
        .system = "bicycle",
        .mjcf = "bicycle_planar.xml",
-       .summary = "the bicycle in joints of MuJoCo, pushed by its tyres' forces"},
+       .summary = "the bicycle built from MuJoCo joints, driven by its tyre forces"},
       {.name = "mujoco_car",
        .system = "bicycle",
        .mjcf = "bicycle_car.xml",
@@ -90,7 +90,7 @@ Scenario with_plant(Scenario scenario, const std::string& name) {
     throw InputError(
         {.key = "--plant",
          .found = name,
-         .expected = "an MJCF file that exists, or " + expected_names(name, plant_names(system))});
+         .expected = "an existing MJCF file, or " + expected_names(name, plant_names(system))});
   }
   if (mjcf != plant.mjcf) {
     // These refer to the previous file.

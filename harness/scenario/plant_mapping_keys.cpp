@@ -27,7 +27,7 @@ KeyDescription offset_key() {
 KeyDescription parameter_key() {
   return {.name = "parameter",
           .values = {SystemNameValue{NameFamily::kParameters}},
-          .words = "a constant of the system; without it the gain alone"};
+          .words = "a constant of the system; without one, the gain alone"};
 }
 
 KeyDescription positive_key(const char* name, const char* words, const char* unit) {
@@ -46,7 +46,7 @@ MappingValue quantity() {
   std::vector<std::string> quantities = joint_quantities();
   quantities.insert(quantities.end(), body_quantities().begin(), body_quantities().end());
   return {{element_key("joint", "a slide or hinge joint", false),
-           element_key("body", "a body, whose origin is meant", false),
+           element_key("body", "a body; the quantity is that of its origin", false),
            element_key("sensor", "a sensor", false),
            {.name = "quantity",
             .values = {NameValue{std::move(quantities)}},
@@ -62,35 +62,40 @@ MappingValue quantity() {
 /// The keys of all kinds of loops together; `kind` determines which of them apply.
 std::vector<KeyDescription> loop_keys() {
   const SystemNameValue input{NameFamily::kInputs};
-  const MappingValue speed{{parameter_key(), gain_key("factor on the constant, m/s without one")}};
-  const ListValue wheels =
-      mappings({element_key("joint", "that the wheel turns about"),
-                element_key("actuator", "servo that steers it, `ackermann` only", false),
-                positive_key("cornering_stiffness", "of its tyre, `tyre_forces` only", "N/rad")});
-  const MappingValue goal{{{.name = "input", .values = {input}, .words = "that the goal follows"},
-                           parameter_key(),
-                           gain_key("factor on either; the goal itself without one")}};
-  const ListValue actuators = mappings({element_key("actuator", "that brings a force or torque"),
-                                        gain_key("how it shares the command, not 0")});
+  const MappingValue speed{{parameter_key(), gain_key("factor on the constant; without one, m/s")}};
+  const ListValue wheels = mappings(
+      {element_key("joint", "joint that the wheel turns about"),
+       element_key("actuator", "servo that steers it, `ackermann` only", false),
+       positive_key("cornering_stiffness", "stiffness of its tyre, `tyre_forces` only", "N/rad")});
+  const MappingValue goal{
+      {{.name = "input", .values = {input}, .words = "input that the goal follows"},
+       parameter_key(),
+       gain_key("factor on either; without one, the goal itself")}};
+  const ListValue actuators =
+      mappings({element_key("actuator", "actuator that exerts a force or torque"),
+                gain_key("its share of the command, not 0")});
   return {
       {.name = "kind",
        .values = {NameValue{loop_kind_names()}},
-       .words = "which loop it is",
+       .words = "kind of the loop",
        .required = true},
       {.name = "input", .values = {input}, .words = "`ackermann`: the yaw rate or steering angle"},
       {.name = "speed", .values = {speed}, .words = "`ackermann`, `speed_hold`: m/s"},
       {.name = "wheels",
        .values = {wheels},
-       .words = "`ackermann`: those that are steered; `tyre_forces`: all"},
+       .words = "`ackermann`: the steered wheels; `tyre_forces`: all wheels"},
       {.name = "quantity",
        .values = {quantity()},
        .words = "`feedback`: the velocity that is held"},
-      {.name = "goal", .values = {goal}, .words = "`feedback`: what it is held at"},
-      {.name = "actuators", .values = {actuators}, .words = "`feedback`: what holds it"},
-      positive_key("time_constant", "`feedback`: of the lag behind the goal", "s"),
+      {.name = "goal", .values = {goal}, .words = "`feedback`: the value at which it is held"},
+      {.name = "actuators",
+       .values = {actuators},
+       .words = "`feedback`: the actuators that hold it"},
+      positive_key("time_constant", "`feedback`: time constant of the lag behind the goal", "s"),
       {.name = "response",
        .values = {NumberValue{}},
-       .words = "`feedback`: rate of the velocity by unit of the command, not 0; else measured"},
+       .words = "`feedback`: rate of change of the velocity per unit of the command, not 0; "
+                "measured if omitted"},
       {.name = "fixed_axle",
        .values = {elements()},
        .words = "`ackermann`: joints of the wheels that are not steered"},
@@ -101,27 +106,30 @@ std::vector<KeyDescription> loop_keys() {
       {.name = "steering", .values = {input}, .words = "`axle_forces`: the input, rad"},
       element_key("front_axle", "`axle_forces`: a site", false),
       element_key("rear_axle", "`axle_forces`: a site", false),
-      positive_key("front_stiffness", "`axle_forces`: of the axle", "N/rad"),
-      positive_key("rear_stiffness", "`axle_forces`: of the axle", "N/rad"),
-      positive_key("longitudinal_stiffness", "`tyre_forces`: of a tyre, by unit of slip", "N"),
+      positive_key("front_stiffness", "`axle_forces`: stiffness of the axle", "N/rad"),
+      positive_key("rear_stiffness", "`axle_forces`: stiffness of the axle", "N/rad"),
+      positive_key("longitudinal_stiffness", "`tyre_forces`: stiffness of a tyre, per unit of slip",
+                   "N"),
       positive_key("friction", "`tyre_forces`: coefficient of friction", ""),
-      positive_key("slowest", "speed below which slip is taken as if the vehicle went at it",
+      positive_key("slowest",
+                   "speed below which slip is computed as if the vehicle moved at this speed",
                    "m/s")};
 }
 
 std::vector<KeyDescription> actuation_keys() {
-  const ListValue terms = mappings({element_key("actuator", "that the input acts on"),
+  const ListValue terms = mappings({element_key("actuator", "actuator that the input acts on"),
                                     gain_key("factor on the input, not 0"), offset_key()});
-  const ListValue holds = mappings({element_key("actuator", "whose control it is added to"),
-                                    parameter_key(), gain_key("factor on the constant")});
+  const ListValue holds =
+      mappings({element_key("actuator", "actuator whose control it is added to"), parameter_key(),
+                gain_key("factor on the constant")});
   return {{.name = "input",
-           .values = {MappingValue{{{.name = "INPUT",
-                                     .family = NameFamily::kInputs,
-                                     .values = {terms},
-                                     .words = "list of `{actuator, gain, offset}`: the control of "
-                                              "the actuator is the sum of gain · input + offset "
-                                              "over all that name it",
-                                     .fallback_words = "none: then a loop must use the input"}}}}},
+           .values = {MappingValue{
+               {{.name = "INPUT",
+                 .family = NameFamily::kInputs,
+                 .values = {terms},
+                 .words = "list of `{actuator, gain, offset}`: the control of an actuator is the "
+                          "sum of gain · input + offset over all entries that name it",
+                 .fallback_words = "none: then a loop must use the input"}}}}},
           {.name = "hold",
            .values = {holds},
            .words = "list of `{actuator, parameter, gain}`: adds gain times the constant "
@@ -139,8 +147,8 @@ std::vector<KeyDescription> actuation_keys() {
            .values = {MappingValue{{{.name = "ACTUATOR",
                                      .family = NameFamily::kFree,
                                      .values = {NumberValue{kPositive}},
-                                     .words = "how fast the control may change",
-                                     .unit = "of the control, per s",
+                                     .words = "maximum rate of change of the control",
+                                     .unit = "of the control per s",
                                      .fallback_words = "not limited"}}}}}};
 }
 
@@ -148,19 +156,19 @@ std::vector<KeyDescription> timing_keys() {
   const PlantMapping defaults;
   return {{.name = "input_delay",
            .values = {NumberValue{kInputDelayRange}},
-           .words = "time until an input acts",
+           .words = "delay before an input acts",
            .unit = "s",
            .fallback = fmt::format("{}", defaults.input_delay)},
           {.name = "settling",
            .values = {NumberValue{kSettlingRange}},
-           .words = "how long the vehicle runs, {range}, its inputs zero, before it is first "
+           .words = "time, {range}, for which the vehicle runs with zero inputs before it is first "
                     "placed: it comes to rest on its springs and reaches the speed that it holds",
            .unit = "s",
            .fallback = fmt::format("{}", defaults.settling)},
           {.name = "time_steps",
            .values = {VectorValue{.size = Dimension::kAny, .length = 2, .range = kPositive}},
-           .words = "`[least, most]`: the simulator's time steps that the vehicle was made for; "
-                    "others are refused",
+           .words = "`[least, most]`: the range of simulator time steps that the vehicle was made "
+                    "for; others are refused",
            .unit = "s",
            .fallback_words = "any"}};
 }

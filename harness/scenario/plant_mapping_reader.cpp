@@ -327,7 +327,7 @@ PlantMapping own_plant_mapping(const std::optional<std::string>& text, const std
                     .key = "plant.state",
                     .found = "nothing",
                     .expected = "where the model has each state and input, in the scenario or in a "
-                                "custom text called \"qsmpc\" of the model"});
+                                "custom text named \"qsmpc\" in the model"});
 }
 
 }  // namespace qsmpc::harness

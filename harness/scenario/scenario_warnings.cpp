@@ -44,9 +44,10 @@ void warn_of_limits(const Scenario& scenario, std::vector<std::string>& warnings
       {.mean = scenario.initial_state.mean, .covariance = scenario.initial_state.covariance},
       scenario.safe_set);
   if (start > least) {
-    warnings.push_back(fmt::format(
-        "the start is unsafe with a certified probability up to {:.3g}, above the limit of {:.3g}",
-        start, least));
+    warnings.push_back(
+        fmt::format("the start is unsafe with a certified probability of up to {:.3g}, above the "
+                    "limit of {:.3g}",
+                    start, least));
   }
 }
 
@@ -57,9 +58,10 @@ void warn_of_degrees(const Scenario& scenario, std::vector<std::string>& warning
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       const models::Coordinate& state = states[static_cast<std::size_t>(i)];
       if (state.unit != "rad" || !(std::abs(values[i]) > kTurn)) continue;
-      warnings.push_back(fmt::format(
-          "{}: {} = {:.4g} is more than a turn: angles are in radians; {:.4g} degrees are {:.4g}",
-          key, state.name, values[i], values[i], values[i] * std::numbers::pi / 180.0));
+      warnings.push_back(
+          fmt::format("{}: {} = {:.4g} is more than a full turn: angles are in radians; {:.4g} "
+                      "degrees are {:.4g}",
+                      key, state.name, values[i], values[i], values[i] * std::numbers::pi / 180.0));
     }
   };
   question("initial_state.mean", scenario.initial_state.mean);
@@ -79,7 +81,7 @@ void warn_of_degrees(const Scenario& scenario, std::vector<std::string>& warning
 void warn_of_error_plant(const Scenario& scenario, std::vector<std::string>& warnings) {
   for (const std::string& difference : plant_differences(scenario)) {
     warnings.push_back(
-        "model_error was measured of another plant, and need not hold for this one: " + difference);
+        "model_error was measured on another plant and need not hold for this one: " + difference);
   }
 }
 

@@ -65,12 +65,12 @@ std::shared_ptr<const controller::RoadWalls> road_of(const TargetPath& path,
   const double width = (widths.right + widths.left).minCoeff(&narrowest);
   const double needed = 2.0 * half_width(body);
   if (width <= needed) {
-    note(narrowest, fmt::format("a road that is {:.3g} wide", width),
+    note(narrowest, fmt::format("a road that is {:.3g} m wide", width),
          fmt::format("more than the {:.3g} m of the vehicle's body", needed));
     return nullptr;
   }
   if (const auto folded = controller::folded_edge(*course.path, widths)) {
-    note(folded->point, fmt::format("the width {:.3g} on the inner side of a bend", folded->width),
+    note(folded->point, fmt::format("a width of {:.3g} m on the inner side of a bend", folded->width),
          fmt::format("less than the bend's radius, {:.3g} m", folded->radius));
     return nullptr;
   }
@@ -80,7 +80,7 @@ std::shared_ptr<const controller::RoadWalls> road_of(const TargetPath& path,
   if (const auto place = controller::where_edges_meet(edges)) {
     note(nearest_row(path.rows, *place),
          fmt::format("edges that meet near ({:.4g}, {:.4g})", place->x(), place->y()),
-         "a road that crosses neither itself nor another stretch of it, or no widths");
+         "a road whose stretches do not cross one another or themselves, or no widths");
     return nullptr;
   }
   return std::make_shared<const controller::RoadWalls>(std::move(edges));

@@ -82,7 +82,7 @@ std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix) {
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
       if (std::abs(matrix(i, j) / scale - matrix(j, i) / scale) > kMatrixTolerance) {
-        return fmt::format("{} in row {}, column {} and {} in its mirror image", matrix(i, j),
+        return fmt::format("{} in row {}, column {} and {} in the transposed entry", matrix(i, j),
                            i + 1, j + 1, matrix(j, i));
       }
       matrix(j, i) = matrix(i, j);

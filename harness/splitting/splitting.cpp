@@ -22,7 +22,8 @@ struct Particle {
 double most_of(const SplitPath& path) {
   if (path.levels.empty() ||
       std::ranges::any_of(path.levels, [](double level) { return std::isnan(level); })) {
-    throw std::invalid_argument("splitting: a path without levels, or with one not a number");
+    throw std::invalid_argument(
+        "splitting: a path without levels, or with a level that is not a number");
   }
   return std::ranges::max(path.levels);
 }
@@ -178,7 +179,7 @@ class Splitting {
 }  // namespace
 
 PathNotRepeated::PathNotRepeated(std::size_t instant)
-    : std::runtime_error("a path that was driven again with the same seeds differs at instant " +
+    : std::runtime_error("a path driven again with the same seeds differs at instant " +
                          std::to_string(instant)),
       instant_(instant) {}
 
@@ -186,7 +187,7 @@ std::optional<SplitRun> split(const SplitSettings& settings, std::uint64_t seed,
                               const DrivePath& drive) {
   if (settings.particles < 2 || settings.killed < 1 || settings.killed >= settings.particles ||
       !(settings.floor >= 0.0)) {
-    throw std::invalid_argument("splitting: settings that make no sense");
+    throw std::invalid_argument("splitting: invalid settings");
   }
   return Splitting(settings, seed, drive).run();
 }

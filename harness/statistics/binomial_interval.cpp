@@ -8,7 +8,7 @@ namespace qsmpc::harness {
 
 RateInterval clopper_pearson(std::int64_t events, std::int64_t trials, double tail) {
   if (trials < 1 || events < 0 || events > trials || !(tail > 0.0 && tail < 1.0)) {
-    throw std::invalid_argument("Clopper-Pearson: a count or confidence that cannot be");
+    throw std::invalid_argument("Clopper-Pearson: an invalid count or confidence");
   }
   using Binomial = boost::math::binomial_distribution<double>;
   const auto n = static_cast<double>(trials);

@@ -24,7 +24,7 @@ double log_likelihood(double events, double others, double p) {
 
 RateInterval confidence_sequence(std::int64_t events, std::int64_t trials, double confidence) {
   if (events < 0 || events > trials || !(confidence > 0.0 && confidence < 1.0)) {
-    throw std::invalid_argument("confidence sequence: a count or confidence that cannot be");
+    throw std::invalid_argument("confidence sequence: an invalid count or confidence");
   }
   if (trials == 0) return {};
   const auto seen = static_cast<double>(events);

@@ -46,7 +46,7 @@ double exceedance_p_value(const std::vector<EventTally>& tallies) {
   double evidence = 0.0;
   for (const EventTally& tally : tallies) {
     if (tally.events < 0 || !(tally.certified >= 0.0)) {
-      throw std::invalid_argument("exceedance: a tally that cannot be");
+      throw std::invalid_argument("exceedance: an invalid tally");
     }
     evidence += std::exp(log_evidence(tally));
   }

@@ -23,7 +23,7 @@ SortedQuantiles::SortedQuantiles(std::int64_t count, const std::vector<double>& 
     : values_(shares.size(), kNotANumber) {
   const bool in_range = std::ranges::all_of(shares, [](double q) { return q >= 0.0 && q <= 1.0; });
   if (count < 0 || !in_range || !std::ranges::is_sorted(shares)) {
-    throw std::invalid_argument("quantiles: a count or shares that cannot be");
+    throw std::invalid_argument("quantiles: an invalid count or invalid shares");
   }
   for (const double share : shares) ranks_.push_back(nearest_rank(share, count));
 }

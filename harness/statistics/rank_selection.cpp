@@ -36,7 +36,7 @@ class RankSelection {
   RankSelection(const ValueStream& each, std::int64_t count, const std::vector<std::int64_t>& ranks)
       : each_(each) {
     for (const std::int64_t rank : ranks) {
-      if (rank < 1 || rank > count) throw std::invalid_argument("ranks: one that is not there");
+      if (rank < 1 || rank > count) throw std::invalid_argument("ranks: a rank out of range");
       wanted_.push_back({.prefix = 0, .rank = rank, .count = count});
     }
   }
@@ -128,19 +128,29 @@ const std::vector<double>& KeptValues::sorted() {
 }
 
 Distribution KeptValues::distribution(const ValueStream& each) {
-  if (has_all()) {
-    SortedDistribution distribution(count_);
-    for (const double value : sorted()) distribution.add(value);
-    return distribution.result();
-  }
+  if (count_ == 0) return SortedDistribution(0).result();
   std::vector<std::int64_t> ranks;
   for (const double share : distribution_shares()) ranks.push_back(nearest_rank(share, count_));
-  const std::vector<double> values = values_at_ranks(each, count_, ranks, most_kept_);
+  const std::vector<double> values =
+      has_all() ? selected(ranks) : values_at_ranks(each, count_, ranks, most_kept_);
   return {.median = values[0],
           .p95 = values[1],
           .p99 = values[2],
           .max = values[3],
           .mean = sum_ / static_cast<double>(count_)};
+}
+
+/// The values at ascending ranks (1 … count) of the kept values, which are reordered.
+std::vector<double> KeptValues::selected(const std::vector<std::int64_t>& ranks) {
+  std::vector<double> values;
+  auto begin = values_.begin();
+  for (const std::int64_t rank : ranks) {
+    const auto place = values_.begin() + (rank - 1);
+    if (place >= begin) std::nth_element(begin, place, values_.end());
+    begin = std::max(begin, place + 1);
+    values.push_back(*place);
+  }
+  return values;
 }
 
 }  // namespace qsmpc::harness

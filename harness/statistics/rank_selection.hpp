@@ -33,11 +33,13 @@ class KeptValues {
   [[nodiscard]] bool has_all() const { return count_ <= most_kept_; }
   /// All values, ascending. Precondition: has_all().
   [[nodiscard]] const std::vector<double>& sorted();
-  /// The distribution of all values, as SortedDistribution has it. Where they are not kept, `each`,
-  /// the same stream, is read again, and the mean is summed in stream order.
+  /// The distribution of all values, as SortedDistribution has it, but with the mean summed in
+  /// stream order. Where they are not kept, `each`, the same stream, is read again.
   [[nodiscard]] Distribution distribution(const ValueStream& each);
 
  private:
+  std::vector<double> selected(const std::vector<std::int64_t>& ranks);
+
   std::int64_t most_kept_;
   std::int64_t count_ = 0;
   double sum_ = 0.0;

@@ -37,7 +37,8 @@ RateInterval lognormal_mean(const std::vector<double>& logarithms, double tail) 
 }  // namespace
 
 RateInterval skewed_mean_interval(const std::vector<double>& sample, double tail) {
-  if (!(tail > 0.0 && tail < 0.5)) throw std::invalid_argument("skewed mean: no such tail");
+  if (!(tail > 0.0 && tail < 0.5))
+    throw std::invalid_argument("skewed mean: tail outside of (0, 0.5)");
   std::vector<double> logarithms;
   for (const double value : sample) {
     if (!(value >= 0.0) || !std::isfinite(value)) {

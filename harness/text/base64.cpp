@@ -13,7 +13,7 @@ constexpr std::string_view kAlphabet =
 std::uint8_t hex_value(char digit) {
   constexpr std::string_view kHex = "0123456789abcdef";
   const std::size_t value = kHex.find(digit);
-  if (value == std::string_view::npos) throw std::invalid_argument("no hexadecimal digits");
+  if (value == std::string_view::npos) throw std::invalid_argument("not a hexadecimal digit");
   return static_cast<std::uint8_t>(value);
 }
 

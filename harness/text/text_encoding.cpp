@@ -23,7 +23,8 @@ std::optional<TextProblem> find_text_problem(std::string_view text) {
     const std::string_view rest = text.substr(at);
     const std::size_t length = utf8_length(rest);
     const unsigned value = static_cast<unsigned char>(rest.front());
-    if (length == 0) return TextProblem{line, fmt::format("the byte 0x{:02X}, not UTF-8", value)};
+    if (length == 0)
+      return TextProblem{line, fmt::format("the byte 0x{:02X}, which is not valid UTF-8", value)};
     if (length == 1 && !is_allowed(rest)) {
       return TextProblem{line, fmt::format("the control character 0x{:02X}", value)};
     }

@@ -38,8 +38,8 @@ inline constexpr std::array<BudgetField, 4> kBudgetColumns = {{
 
 inline constexpr const char* kCertificateValuePath = "/certificate/value";
 inline constexpr const char* kCertificateValueMeaning =
-    "the least of the sound upper bounds of the probability that the state, the model's or with a "
-    "model_error the plant's, is unsafe; the first is that of stage 1";
+    "smallest of the sound upper bounds of the probability that the state (the model's, or with a "
+    "model_error the plant's) is unsafe; the first is that of stage 1";
 
 inline constexpr const char* kDynamicsPath = "/certificate/dynamics";
 /// The budget's share due to the scenario's model error. It is not one of the columns, so that
@@ -48,11 +48,11 @@ inline constexpr const char* kModelErrorPath = "/certificate/model";
 /// Unit of a W2 distance.
 inline constexpr const char* kStateNorm = "Euclidean norm of the state";
 inline constexpr const char* kBudgetMeaning =
-    "bounds of the W2 distance between the particles and the law of the state, the model's or with "
-    "a model_error the plant's; stage 0 is the present";
+    "bounds of the W2 distance between the particles and the law of the state (the model's, or "
+    "with a model_error the plant's); stage 0 is the present";
 inline constexpr const char* kDynamicsMeaning =
-    "how much of the budget's total is due to the dynamics stretching distances; a part of the "
-    "other sources, not one beside them";
+    "part of the budget's total that is due to the dynamics stretching distances; already included "
+    "in the other sources";
 inline constexpr const char* kModelErrorMeaning =
     "W2 error that the scenario's model_error alone would give; 0 without one";
 inline constexpr const char* kLipschitzMeaning =

@@ -98,7 +98,7 @@ bool opened_for_writing(const std::string& path) {
   if (count < 0) throw IoError(path + ": " + std::strerror(error));
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   if (std::string_view(head.data(), kSignature.size()) != kSignature) {
-    throw InputError({.file = path, .found = "no HDF5 file", .expected = kExpected});
+    throw InputError({.file = path, .found = "a file that is not HDF5", .expected = kExpected});
   }
   return head[kVersion] >= 3 && head[kFlags] != 0;
 }

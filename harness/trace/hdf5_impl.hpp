@@ -46,7 +46,7 @@ struct Hdf5File::Impl {
       throw IoError(path + ": cannot write " + object + ": " + words);
     }
     throw InputError(
-        {.file = path, .key = object, .found = words, .expected = "a trace that is not damaged"});
+        {.file = path, .key = object, .found = words, .expected = "an undamaged trace"});
   }
   void check(herr_t status, const std::string& object) const {
     if (status < 0) fail(object);

@@ -40,8 +40,8 @@ void Hdf5File::Impl::read_attribute(const std::string& object, const std::string
       H5Sget_simple_extent_npoints(space.get()) != static_cast<hssize_t>(count)) {
     throw InputError({.file = path,
                       .key = what,
-                      .found = "another type of attribute",
-                      .expected = H5Tget_class(type) == H5T_STRING  ? "one text"
+                      .found = "a different type of attribute",
+                      .expected = H5Tget_class(type) == H5T_STRING  ? "one string"
                                   : H5Tget_class(type) == H5T_FLOAT ? "floating-point numbers"
                                                                     : "one integer"});
   }
@@ -67,8 +67,8 @@ std::size_t Hdf5File::Impl::text_bytes(const std::string& object, const std::str
   if (!fixed || H5Tget_size(stored.get()) > kElementLimit) {
     throw InputError({.file = path,
                       .key = what,
-                      .found = "another type of attribute",
-                      .expected = "one text of fixed length"});
+                      .found = "a different type of attribute",
+                      .expected = "one string of fixed length"});
   }
   return H5Tget_size(stored.get());
 }
@@ -78,7 +78,7 @@ hsize_t Hdf5File::Impl::readable_elements(const std::string& name, H5T_class_t w
   if (H5Tget_class(type.get()) != wanted) {
     throw InputError({.file = path,
                       .key = name,
-                      .found = "another type of element",
+                      .found = "a different type of element",
                       .expected = wanted == H5T_STRING    ? "texts"
                                   : wanted == H5T_INTEGER ? "integers"
                                                           : "floating-point numbers"});
@@ -177,8 +177,8 @@ std::vector<std::string> Hdf5File::texts(const std::string& path) const {
   if (H5Tis_variable_str(stored.get()) != 0) {
     throw InputError({.file = impl_->path,
                       .key = path,
-                      .found = "texts of variable length",
-                      .expected = "texts of fixed length"});
+                      .found = "strings of variable length",
+                      .expected = "strings of fixed length"});
   }
   std::string bytes(count * kTextBytes, '\0');
   impl_->check(H5Dread(impl_->dataset(path), text_type(kTextBytes).get(), H5S_ALL, H5S_ALL,

@@ -52,7 +52,7 @@ void Hdf5File::Impl::append_rows(const std::string& name, hid_t type, const void
   for (std::size_t i = 1; i < lengths.size(); ++i) row *= lengths[i];
   if (row == 0 ? count != 0 : count % row != 0) {
     throw std::invalid_argument(name + ": " + std::to_string(count) +
-                                " values are no whole number of rows of " + std::to_string(row));
+                                " values are not a whole number of rows of " + std::to_string(row));
   }
   if (count == 0) return;
   std::vector<hsize_t> start(lengths.size(), 0);

@@ -97,7 +97,7 @@ models::SystemDescription read_system(const Hdf5File& file) {
     const std::int64_t index = file.integer(kSystem, drawn.name);
     if (index < -1 || index >= std::ssize(system.states)) {
       refuse(file, std::string(kSystem) + "@" + drawn.name, std::to_string(index),
-             "-1 or the number of a state, counted from 0");
+             "-1 or the index of a state, counted from 0");
     }
     system.*drawn.member = static_cast<int>(index);
   }

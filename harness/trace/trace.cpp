@@ -50,7 +50,7 @@ Outcome outcome_from_name(const std::string& name) {
   for (const auto& [value, known] : kOutcomeNames) {
     if (name == known) return value;
   }
-  throw std::invalid_argument("\"" + name + "\" is no outcome: " + outcome_list());
+  throw std::invalid_argument("\"" + name + "\" is not an outcome: " + outcome_list());
 }
 
 const char* fault_of_name(FaultOf fault_of) {

@@ -55,8 +55,8 @@ void add_contact(std::vector<DatasetSpec>& layout) {
   layout.push_back({.path = kContactTimePath,
                     .axes = {"step"},
                     .units = {"s"},
-                    .comment = "when the vehicle first touched one within the period; not a "
-                               "number without contact"});
+                    .comment = "time of the vehicle's first contact with one within the period; "
+                               "NaN without contact"});
 }
 
 void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
@@ -93,14 +93,14 @@ void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .axes = {"step", "state"},
                     .units = n.states.units,
                     .columns = n.states.names,
-                    .comment = "what of the state at the end of the period neither the planner's "
-                               "model nor the disturbance explains; not a number where the plant "
-                               "broke"});
+                    .comment = "part of the state at the end of the period that neither the "
+                               "planner's model nor the disturbance explains; NaN where the plant "
+                               "failed"});
   layout.push_back({.path = kBetweenPath,
                     .axes = {"step"},
                     .units = {n.clearance_unit},
                     .comment = "least distance to the unsafe set at the simulator's steps within "
-                               "the period, before the disturbance; not a number without them"});
+                               "the period, before the disturbance; NaN without them"});
   if (n.solid) add_contact(layout);
   layout.push_back({.path = "/plant/final_state",
                     .axes = {"state"},
@@ -127,14 +127,14 @@ void add_obstacles(std::vector<DatasetSpec>& layout, std::size_t count) {
                     .axes = {"step", "obstacle", "coordinate"},
                     .units = {"m", "m", "rad"},
                     .columns = pose,
-                    .comment = "offset of each moving obstacle from where it is written, and its "
-                               "turn about its centre, at the beginning of the period"});
+                    .comment = "offset of each moving obstacle from its place in the scenario, and "
+                               "its turn about its centre, at the beginning of the period"});
   layout.push_back({.path = kObstacleSeenPath,
                     .row_shape = {count, 2},
                     .axes = {"step", "obstacle", "coordinate"},
                     .units = {"m", "m"},
                     .columns = {"x", "y"},
-                    .comment = "what the planner saw of the offset"});
+                    .comment = "the offset as the planner observed it"});
   layout.push_back({.path = kObstacleFinalPath,
                     .row_shape = {pose.size()},
                     .axes = {"obstacle", "coordinate"},
@@ -175,7 +175,7 @@ void add_policy(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .axes = {"step", "stage", "input", "state"},
                     .units = {"unit of the input by that of the state"},
                     .columns = n.states.names,
-                    .comment = "how inputs answer to the state's distance from the nominal one"});
+                    .comment = "feedback gains on the state's deviation from the nominal state"});
 }
 
 void add_solution(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
@@ -191,7 +191,7 @@ void add_solution(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .type = Type::kText,
                     .axes = {"step"},
                     .units = {"1"},
-                    .comment = "what the solver said"});
+                    .comment = "the solver's status"});
   layout.push_back({.path = "/plan/fallback",
                     .type = Type::kInt64,
                     .axes = {"step"},
@@ -209,14 +209,14 @@ void add_believed(std::vector<DatasetSpec>& layout) {
                     .axes = {"step"},
                     .units = {"1"},
                     .comment = "the controller's own estimate of the probability that the state at "
-                               "the end of the period is unsafe, no bound; not a number where it "
-                               "has none"});
+                               "the end of the period is unsafe; not a bound; NaN where it has "
+                               "none"});
 }
 
 void add_particles(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
   const std::string slices =
-      "the points of step k and stage s (0 is the present) are the rows offsets[k, s] up to, "
-      "without, offsets[k, s + 1], counted from 0";
+      "the points of step k and stage s (0 is the present) are the rows from offsets[k, s] up to "
+      "but not including offsets[k, s + 1], counted from 0";
   layout.push_back({.path = "/particles/locations",
                     .row_shape = {n.states.names.size()},
                     .axes = {"point", "state"},

@@ -327,7 +327,7 @@ void TraceReader::read_particles() {
       const std::int64_t count = bounds[s + 1] - begin;
       if (begin < 0 || begin > points || count < 0 || count > points - begin) {
         refuse("/particles/offsets", std::to_string(begin) + " to " + std::to_string(bounds[s + 1]),
-               "rising offsets up to " + std::to_string(points));
+               "non-decreasing offsets up to " + std::to_string(points));
       }
       const auto first = static_cast<std::size_t>(begin);
       trace_.steps[k].particles.push_back(

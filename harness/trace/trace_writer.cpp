@@ -88,7 +88,7 @@ void TraceWriter::check_sizes(const StepRecord& record) const {
               record.belief_covariance.cols() == state_dim_,
           "belief_covariance is not state_dim x state_dim");
   require(record.obstacles.cols() == obstacles_ && record.obstacles_seen.cols() == obstacles_,
-          "obstacles are not as many as move");
+          "obstacles are not one per moving obstacle");
   const auto stages = static_cast<std::size_t>(stages_);
   require(record.budgets.size() == stages + 1, "budgets are not stages + 1");
   require(record.certificates.size() == stages, "certificates are not stages");

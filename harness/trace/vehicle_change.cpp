@@ -17,7 +17,7 @@ std::string vehicle_change(const Trace& trace) {
     return {};  // the drawing code reports it
   }
   constexpr std::size_t kLongestPath = 200;
-  return fmt::format("{} has changed since the drive: the vehicle is drawn as the file is now.",
+  return fmt::format("{} has changed since the drive; the vehicle is drawn from the current file.",
                      printable(path, kLongestPath));
 }
 

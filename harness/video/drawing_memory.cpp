@@ -42,8 +42,8 @@ std::optional<std::string> why_no_memory_to_draw(const EpisodeVideoOptions& opti
   const double need = drawing_memory(options, available_threads());
   if (need <= free) return std::nullopt;
   return fmt::format(
-      "drawing {}x{} pixels on {} threads takes about {:.0f} MB of address space, and the limit of "
-      "the process (ulimit -v) leaves {:.0f} MB",
+      "drawing {}x{} pixels on {} threads takes about {:.0f} MB of address space, but the process "
+      "limit (ulimit -v) leaves {:.0f} MB",
       options.width, options.height, options.threads, need / kMega, free / kMega);
 }
 

@@ -51,7 +51,7 @@ class Timetable {
     }
     if (!(from_ >= 0.0 && from_ <= to_)) {
       throw std::invalid_argument(fmt::format(
-          "video: from {} s to {} s is no part of an episode of {:.6g} s", from_, to_, duration));
+          "video: {} s to {} s is not part of an episode of {:.6g} s", from_, to_, duration));
     }
     const double hold = to_ >= duration ? kHoldTime * options.fps : 0.0;
     const double frames = (to_ - from_) / step_ + hold;
@@ -90,7 +90,7 @@ VideoTimings write_episode_video(const EpisodeView& view, const EpisodeVideoOpti
                                  const std::string& path,
                                  const std::function<bool(int done, int total)>& progress) {
   if (options.threads < 1) {
-    throw std::invalid_argument("video: at least one thread must draw");
+    throw std::invalid_argument("video: at least one thread is needed");
   }
   const Clock::time_point begin = Clock::now();
   const EpisodePictures pictures(view, layout_of(options), options.beside);

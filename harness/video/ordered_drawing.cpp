@@ -14,7 +14,7 @@ constexpr std::size_t kSlotsPerThread = 2;
 
 std::size_t slot_count(const OrderedDrawing::Work& work) {
   if (work.threads < 1) {
-    throw std::invalid_argument("drawing: at least one thread must draw");
+    throw std::invalid_argument("drawing: at least one thread is needed");
   }
   return kSlotsPerThread * static_cast<std::size_t>(work.threads);
 }
@@ -42,7 +42,7 @@ OrderedDrawing::~OrderedDrawing() {
 void OrderedDrawing::take(render::Image& image) {
   std::unique_lock lock(mutex_);
   if (taken_ >= total_) {
-    throw std::out_of_range("drawing: all pictures are taken");
+    throw std::out_of_range("drawing: all pictures have been taken");
   }
   Slot& slot = slot_of(taken_);
   changed_.wait(lock, [&] { return error_ != nullptr || slot.drawn; });

@@ -28,7 +28,7 @@ Overlays overlays_of(const std::vector<std::string>& names) {
   Overlays overlays = kNone;
   for (const std::string& name : names) {
     bool* const wanted = switch_of(overlays, name);
-    if (wanted == nullptr) throw std::invalid_argument("overlay \"" + name + "\" is none");
+    if (wanted == nullptr) throw std::invalid_argument("overlay \"" + name + "\" does not exist");
     *wanted = true;
   }
   return overlays;
@@ -45,7 +45,7 @@ Overlays parse_overlays(std::string_view text, std::string_view option) {
     if (wanted == nullptr) {
       throw InputError({.key = std::string(option),
                         .found = name.empty() ? "an empty name" : name,
-                        .expected = "all, none, or a list with commas of " +
+                        .expected = "all, none, or a comma-separated list of " +
                                     expected_names(name, overlay_names())});
     }
     *wanted = true;

@@ -15,7 +15,7 @@ double VideoTimings::frames_per_second() const { return wall_s > 0.0 ? frames / 
 
 std::string video_line(const VideoTimings& timings) {
   return fmt::format(
-      "video: {} frames in {:.1f} s ({:.0f} frames/s; drawing {:.0f} ms, encoding {:.0f} ms a "
+      "video: {} frames in {:.1f} s ({:.0f} frames/s; drawing {:.0f} ms, encoding {:.0f} ms per "
       "frame)",
       timings.frames, timings.wall_s, timings.frames_per_second(), timings.drawing_ms,
       timings.encoding_ms);
@@ -63,7 +63,7 @@ VideoTimings read_video_timings(const std::string& path) {
   } catch (const std::ios_base::failure& error) {
     found = error.what();
   }
-  throw InputError({.file = path, .found = found, .expected = "what qsmpc render wrote"});
+  throw InputError({.file = path, .found = found, .expected = "a file written by qsmpc render"});
 }
 
 }  // namespace qsmpc::harness

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kDubinsRk4Name = "dubins_rk4";
 constexpr const char* kDubinsRk4Summary =
-    "Dubins car by the Runge-Kutta method: x, y, heading; steered by its yaw rate, which it holds "
+    "Dubins car by the Runge-Kutta method: x, y, heading; steered by its yaw rate, held constant "
     "over a period";
 
 /// Batches use hand-written loops.

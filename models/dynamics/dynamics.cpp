@@ -98,7 +98,7 @@ std::unique_ptr<const Dynamics> make_dynamics(std::string_view name, const Param
   }
   std::string known;
   for (const SystemEntry& entry : systems()) known += (known.empty() ? "" : ", ") + entry.name;
-  throw std::invalid_argument("no system '" + std::string(name) + "'; known are: " + known);
+  throw std::invalid_argument("no system '" + std::string(name) + "'; known: " + known);
 }
 
 }  // namespace qsmpc::models

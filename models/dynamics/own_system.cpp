@@ -46,7 +46,7 @@ class OwnModel {
     if (model_ != nullptr) return;
     const std::string words = message.data();
     throw std::invalid_argument(described.name + ": " +
-                                (words.empty() ? "the library refuses its parameters" : words));
+                                (words.empty() ? "the library rejects its parameters" : words));
   }
   ~OwnModel() { system_.destroy(model_); }
   OwnModel(const OwnModel&) = delete;
@@ -249,9 +249,10 @@ void compare(const Dynamics& recorded, const OwnModel& model) {
     const double there = other.data()[i];
     if (!std::isfinite(here) && !std::isfinite(there)) continue;
     if (std::abs(here - there) <= kRounding * (1.0 + std::abs(there))) continue;
-    throw std::invalid_argument(system.name +
-                                ": the recorded step is not the step: it depends on something else "
-                                "than states and inputs, or on comparing them");
+    throw std::invalid_argument(
+        system.name +
+        ": the recorded step differs from the step: it depends on something "
+        "other than states and inputs, or on comparisons of them");
   }
 }
 
@@ -279,8 +280,8 @@ EquationSystem own_system_of(const qsmpc_system& system) {
     if (is_good && input.lower < input.upper) continue;
     throw EquationError({.section = "inputs",
                          .name = own.inputs.back().name,
-                         .found = "bounds that are no interval",
-                         .expected = "finite ones, lower < upper"});
+                         .found = "bounds that are not an interval",
+                         .expected = "finite bounds, lower < upper"});
   }
   for (int i = 0; i < system.parameter_count; ++i) {
     const qsmpc_parameter& parameter = system.parameters[i];

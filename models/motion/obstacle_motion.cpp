@@ -29,9 +29,9 @@ void check_way(const IntendedWay& way) {
             "finite times and places");
     if (i == 0) continue;
     const double duration = way.points[i].time - way.points[i - 1].time;
-    require(duration > 0.0, "times that ascend, the first above 0");
+    require(duration > 0.0, "ascending times, the first above 0");
     require((way.points[i].place - way.points[i - 1].place).norm() <= kFastestWay * duration,
-            "places that are reached at 100 m/s at most, as it must not jump");
+            "places reached at 100 m/s at most, because an obstacle must not jump");
   }
 }
 
@@ -68,21 +68,20 @@ void check_obstacle_motion(const ObstacleMotion& motion) {
   for (const IntendedWay& way : motion.ways) {
     check_way(way);
     require(way.points.front().place == motion.ways.front().points.front().place,
-            "ways that begin at one place");
+            "ways that begin at the same place");
     sum += way.probability;
   }
   require(std::abs(sum - 1.0) <= kProbabilitySlack, "probabilities that add up to 1");
   require(motion.ways.size() == 1 || motion.seen_deviation > 0.0,
-          "a deviation of what is seen above 0 where there are several ways");
+          "a seen_deviation above 0 where there are several ways");
   require(is_deviation(motion.start_deviation) && is_deviation(motion.speed_deviation) &&
               is_deviation(motion.covariance_rate),
           "deviations and rates of 0 or above, along and across");
   require(motion.memory > 0.0 && std::isfinite(motion.memory), "a memory above 0");
-  require(is_deviation(motion.returns_in), "times of return of 0 or above");
+  require(is_deviation(motion.returns_in), "return times of 0 or above");
   require(motion.seen_deviation >= 0.0 && std::isfinite(motion.seen_deviation),
-          "a deviation of what is seen of 0 or above");
-  require(motion.yields >= 0.0 && std::isfinite(motion.yields),
-          "a distance to wait at of 0 or above");
+          "a seen_deviation of 0 or above");
+  require(motion.yields >= 0.0 && std::isfinite(motion.yields), "a waiting distance of 0 or above");
 }
 
 Eigen::Vector2d intended_offset(const IntendedWay& way, double time) {

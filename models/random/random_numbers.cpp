@@ -30,11 +30,11 @@ std::array<std::uint64_t, kBlock> random_block(const RandomKey& key, Eigen::Inde
 Eigen::MatrixXd symmetric_root(const Eigen::MatrixXd& covariance) {
   const double scale = covariance.cwiseAbs().maxCoeff();
   if (!covariance.isApprox(covariance.transpose(), kRelativeRounding)) {
-    throw std::invalid_argument("covariance that is not symmetric");
+    throw std::invalid_argument("the covariance is not symmetric");
   }
   const SymmetricEigen eigen = symmetric_eigen(covariance);
   if (eigen.values.minCoeff() < -kRelativeRounding * scale) {
-    throw std::invalid_argument("covariance that is not positive semidefinite");
+    throw std::invalid_argument("the covariance is not positive semidefinite");
   }
   const Eigen::VectorXd deviations = eigen.values.cwiseMax(0.0).cwiseSqrt();
   return eigen.vectors * deviations.asDiagonal() * eigen.vectors.transpose();
@@ -80,10 +80,10 @@ GaussianSampler::GaussianSampler(Eigen::VectorXd mean, const Eigen::MatrixXd& co
     : mean_(std::move(mean)) {
   const Eigen::Index n = mean_.size();
   if (n == 0 || covariance.rows() != n || covariance.cols() != n) {
-    throw std::invalid_argument("mean and covariance of sizes that do not agree");
+    throw std::invalid_argument("the sizes of mean and covariance do not agree");
   }
   if (!mean_.allFinite() || !covariance.allFinite()) {
-    throw std::invalid_argument("mean or covariance that is not finite");
+    throw std::invalid_argument("the mean or the covariance is not finite");
   }
   root_ = symmetric_root(covariance);
 }

@@ -34,7 +34,7 @@ using harness::Comparison;
 
 Comparison compare(const harness::Scenario& scenario, const std::vector<std::string>& plants,
                    int episodes, std::int64_t paths, int threads) {
-  if (episodes < 1 || paths < 1) throw nb::value_error("episodes and paths are at least 1");
+  if (episodes < 1 || paths < 1) throw nb::value_error("episodes and paths must be at least 1");
   refuse_beyond_memory(scenario, std::min(harness::usable_threads(threads), episodes));
   return without_lock([&] {
     std::optional<Comparison> comparison = harness::compare_plants(

@@ -83,7 +83,7 @@ controller::SolverStatus status_of(const std::string& name) {
     const auto status = static_cast<SolverStatus>(n);
     if (name == controller::solver_status_name(status)) return status;
   }
-  throw harness::WrongAnswer{"plan.status " + name, "a status of a solver, e.g. converged"};
+  throw harness::WrongAnswer{"plan.status " + name, "a solver status, e.g. converged"};
 }
 
 nb::object member(const nb::handle& plan, const char* name) {
@@ -134,7 +134,7 @@ harness::ControllerAnswer answer_of(const nb::object& value, bool plans) {
     return {.input = vector_of(value, "input")};
   }
   throw harness::WrongAnswer{text_of(nb::repr(value)),
-                             plans ? "a plan: its inputs, a row a stage" : "an array of inputs"};
+                             plans ? "a plan: inputs, one row per stage" : "an array of inputs"};
 }
 
 /// Holds a Python object, and releases it under the interpreter's lock.
@@ -154,7 +154,7 @@ auto asked(const Work& work) {
   } catch (nb::python_error& error) {
     throw std::runtime_error(words_of(error));
   } catch (const nb::cast_error&) {
-    throw std::runtime_error("an answer that holds something else than numbers");
+    throw std::runtime_error("an answer that contains something other than numbers");
   }
 }
 
@@ -169,7 +169,8 @@ harness::ControllerObject controller_object(const nb::object& object) {
   const bool acts = nb::hasattr(object, "act");
   const nb::object function = acts ? nb::getattr(object, "act") : object;
   if (PyCallable_Check(function.ptr()) == 0) {
-    throw nb::type_error("a controller is an object with act(situation), or a function of it");
+    throw nb::type_error(
+        "a controller must be an object with act(situation), or a function of the situation");
   }
   harness::ControllerObject controller{.name = name_of(object)};
   const nb::object asked_for_plans = nb::getattr(object, "plans", nb::none());
@@ -191,29 +192,31 @@ void add_controllers(nb::module_& module) {
   nb::class_<ObstaclePlace>(module, "ObstaclePlace",
                             "One of the ways in which an obstacle may have moved at a stage.")
       .def_ro("weight", &ObstaclePlace::weight, "Its probability.")
-      .def_ro("offset", &ObstaclePlace::offset, "Mean offset from where the shape is written, m.")
-      .def_ro("turn", &ObstaclePlace::turn, "About the shape's centre, rad.")
-      .def_ro("covariance", &ObstaclePlace::covariance, "Of the offset, m².");
-  nb::class_<ToldSituation>(module, "Situation", "What a controller is told once per period.")
-      .def_ro("period", &ToldSituation::period, "Of the drive, from 0.")
-      .def_ro("time", &ToldSituation::time, "s, when the period begins.")
-      .def_ro("observation", &ToldSituation::observation, "What is seen of the state now.")
+      .def_ro("offset", &ObstaclePlace::offset,
+              "Mean offset from the shape's place in the scenario, m.")
+      .def_ro("turn", &ObstaclePlace::turn, "Rotation about the shape's centre, rad.")
+      .def_ro("covariance", &ObstaclePlace::covariance, "Covariance of the offset, m².");
+  nb::class_<ToldSituation>(module, "Situation", "What a controller receives once per period.")
+      .def_ro("period", &ToldSituation::period, "Number of the period in the drive, from 0.")
+      .def_ro("time", &ToldSituation::time, "Start of the period, s.")
+      .def_ro("observation", &ToldSituation::observation, "The current state as observed.")
       .def_ro("belief_mean", &ToldSituation::belief_mean,
-              "Mean of the state as it was predicted before the observation.")
+              "Mean of the state, predicted before the observation.")
       .def_ro("belief_covariance", &ToldSituation::belief_covariance, "Its covariance.")
-      .def_ro("periods_left", &ToldSituation::periods_left, "This one with them, at most.")
+      .def_ro("periods_left", &ToldSituation::periods_left,
+              "Periods left at most, including this one.")
       .def_ro("deadline", &ToldSituation::deadline,
-              "s from now until the answer should be there; infinite without a deadline.")
+              "Time left for the answer, s; infinite without a deadline.")
       .def_prop_ro(
           "waypoints_passed",
           [](const ToldSituation& s) -> std::optional<int> {
             if (!s.progress) return std::nullopt;
             return static_cast<int>(*s.progress);
           },
-          "How many waypoints the mean has passed; None in a scenario without any.")
+          "Number of waypoints that the mean has passed; None in a scenario without waypoints.")
       .def_ro(
           "obstacles", &ToldSituation::obstacles,
-          "Where each obstacle that moves will be: by stage from 0 (now) to the horizon, and by "
+          "Predicted places of each moving obstacle, by stage from 0 (now) to the horizon, and by "
           "way.");
 }
 

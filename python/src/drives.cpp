@@ -107,7 +107,7 @@ class DriveBatch {
   auto step(const RowMatrix& inputs, const std::vector<std::int64_t>& seeds, bool certify) {
     const auto count = static_cast<Eigen::Index>(drives_.size());
     if (inputs.rows() != count || std::ssize(seeds) != count) {
-      throw nb::value_error("a batch takes an input and a seed for each of its drives");
+      throw nb::value_error("a batch needs one input and one seed per drive");
     }
     RowMatrix observations(count, drives_.front()->model().state_dim());
     Eigen::VectorXd costs = Eigen::VectorXd::Zero(count);
@@ -187,7 +187,7 @@ void add_drive_class(nb::module_& module) {
             const Period period = without_lock([&] { return drive.advance(input); });
             return std::tuple(period.cost, period.certified, period.clearance);
           },
-          "input"_a, "Returns cost, certified probability (nan without), clearance.")
+          "input"_a, "Returns cost, certified probability (NaN if not certified), clearance.")
       .def_prop_ro("scenario", [](const OpenDrive& drive) { return drive.scenario(); })
       .def_prop_ro("period", [](const OpenDrive& drive) { return drive.drive().period(); })
       .def_prop_ro("state", [](const OpenDrive& drive) { return drive.drive().state(); })

@@ -61,7 +61,7 @@ void save(const Episode& episode, const std::string& folder) {
   without_lock([&] {
     for (const StepRecord& step : episode.trace().steps) {
       if (!step.certificates.empty()) continue;
-      throw std::invalid_argument("an episode that was driven without certificates has no trace");
+      throw std::invalid_argument("an episode driven without certificates has no trace to save");
     }
     harness::make_output_folder(folder);
     harness::write_trace(folder + "/" + harness::kTraceFile, episode.trace());

@@ -55,9 +55,9 @@ void translate(const std::exception_ptr& pointer, void* /*unused*/) {
 void add_errors(nb::module_& module) {
   input_error = new_exception(
       module, "InputError", PyExc_ValueError,
-      "Something is wrong with a file or a value: one line that says file, line, key, what was\n"
-      "found and what is expected, each of which is an attribute, too (`file`, `line`, `key`,\n"
-      "`found`, `expected`; empty or 0 where not known).");
+      "A file or a value is invalid. The message is one line with file, line, key, what was found\n"
+      "and what was expected, each of which is also an attribute (`file`, `line`, `key`, `found`,\n"
+      "`expected`; empty or 0 if not known).");
   io_error = new_exception(module, "IoError", PyExc_OSError,
                            "A file or folder cannot be read or written.");
   nb::register_exception_translator(translate);

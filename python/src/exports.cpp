@@ -61,7 +61,7 @@ void add_exports(nb::module_& module) {
       "episode"_a, "Name and unit of each state and of each input.");
   module.def(
       "heading", [](const Episode& e) { return e.view().system().heading; }, "episode"_a,
-      "Index of the state that is the heading; -1 where there is none.");
+      "Index of the state that is the heading; -1 if there is none.");
   module.def("map_axes", &axes_of, "episode"_a,
              "The states that a map shows, and whether they are the position in the plane.");
   module.def(
@@ -76,7 +76,7 @@ void add_exports(nb::module_& module) {
   module.def("body_outline", &outline_of, "scenario"_a,
              "The arcs about the vehicle, in its frame: centre, radius, from, to; arcs x 5.");
   module.def("write_file", &write, "path"_a, "content"_a,
-             "Writes a file that is there whole or not at all.");
+             "Writes a file completely or not at all.");
 }
 
 }  // namespace qsmpc::python

@@ -77,7 +77,7 @@ Moment moment_of(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                 .waypoints_passed = waypoints_passed,
                 .obstacles = std::move(obstacles)};
   controller::check_gaussian(moment.belief);
-  if (period < 0) throw std::invalid_argument("a period below 0");
+  if (period < 0) throw std::invalid_argument("period must be at least 0");
   return moment;
 }
 
@@ -207,7 +207,7 @@ std::map<std::string, double> costs_of(const StepRecord& record) {
 }
 
 std::pair<RowMatrix, Eigen::VectorXd> particles_of(const StepRecord& record, std::size_t stage) {
-  if (stage >= record.particles.size()) throw nb::index_error("no particles of that stage");
+  if (stage >= record.particles.size()) throw nb::index_error("that stage has no particles");
   return {as_rows(record.particles[stage].locations), record.particles[stage].weights};
 }
 

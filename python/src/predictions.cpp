@@ -29,7 +29,7 @@ using harness::Scenario;
 
 PredictionReport predict(Scenario scenario, const std::optional<RowMatrix>& inputs,
                          std::int64_t monte_carlo) {
-  if (monte_carlo < 0) throw nb::value_error("monte_carlo: a number of paths below 0");
+  if (monte_carlo < 0) throw nb::value_error("monte_carlo must be at least 0");
   harness::PredictionOptions options;
   if (inputs) {
     options.inputs = as_columns(*inputs);

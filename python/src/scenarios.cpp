@@ -146,7 +146,7 @@ void add_scenario_class(nb::module_& module) {
       .def_prop_ro("shape_outlines", &shape_outlines)
       .def_prop_ro("footprint", &footprint_of)
       .def_prop_ro("no_bound", &harness::why_no_bound,
-                   "Why certificates are no bounds here; empty where they are.")
+                   "Why certificates are not bounds here; empty if they are.")
       .def("cost", &cost_of, "state"_a, "input"_a)
       .def("changed", &changed, "overrides"_a)
       .def("with_seed", &with_seed, "seed"_a)
@@ -190,7 +190,7 @@ class Model {
  private:
   static void check(Eigen::Index found, std::size_t expected, const char* what) {
     if (found == static_cast<Eigen::Index>(expected)) return;
-    const std::string words = std::string(what) + " of " + std::to_string(found) +
+    const std::string words = std::string(what) + ": found " + std::to_string(found) +
                               " numbers, expected " + std::to_string(expected);
     throw nb::value_error(words.c_str());
   }

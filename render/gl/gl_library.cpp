@@ -69,7 +69,7 @@ GlLibrary load(const std::string& name) {
   const std::string& loaded = name_of(s.library->backend);
   if (name != kAuto && name != loaded) {
     throw std::runtime_error("off-screen rendering: " + name + " was asked for, but " + loaded +
-                             " is loaded already, and a process can draw with one only");
+                             " is already loaded, and a process can use only one");
   }
   return *s.library;
 }
@@ -84,7 +84,7 @@ const std::vector<std::string>& gl_names() {
 GlLibrary open_gl(const std::string& name, const GlCandidates& candidates) {
   const std::vector<std::string>& known = gl_names();
   if (std::find(known.begin(), known.end(), name) == known.end()) {
-    throw std::invalid_argument("off-screen rendering: \"" + name + "\" is none of " +
+    throw std::invalid_argument("off-screen rendering: \"" + name + "\" is not one of " +
                                 joined(known));
   }
   std::vector<std::string> tried;

@@ -180,7 +180,7 @@ void write_animated_picture(const AnimatedPicture& wanted, ByteFile& source, Byt
       break;
   }
   throw std::invalid_argument(what + ": " + video_format_name(wanted.format) +
-                              " is no animated picture");
+                              " is not an animated picture format");
 }
 
 }  // namespace qsmpc::render

@@ -13,7 +13,7 @@ std::string encode_png(const Image& image) {
   const auto pixels =
       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   if (image.width <= 0 || image.height <= 0 || image.rgb.size() != 3 * pixels) {
-    throw std::invalid_argument(what + ": its data do not fit its size");
+    throw std::invalid_argument(what + ": its data do not match its size");
   }
   libav::silence_log();
   const libav::Pointer<AVCodecContext> codec = libav::open_encoder({.encoder = "png",

@@ -26,11 +26,11 @@ void check_request(const std::string& what, const VideoSettings& wanted) {
   }
   if (fps <= 0) {
     throw std::invalid_argument(what + ": " + std::to_string(fps) +
-                                " frames a second is not positive");
+                                " frames per second is not positive");
   }
   if (fps > most_frames_per_second(wanted.format)) {
     throw std::invalid_argument(what + ": " + std::to_string(fps) +
-                                " frames a second are more than " +
+                                " frames per second is more than " +
                                 std::to_string(most_frames_per_second(wanted.format)));
   }
   if (wanted.quality < 0 || wanted.quality > kBestQuality) {
@@ -175,7 +175,7 @@ void VideoWriter::add(const Image& image) {
   if (image.width != e.codec->width || image.height != e.codec->height ||
       image.rgb.size() != 3 * pixels) {
     throw std::invalid_argument(e.what + ": a frame of " + std::to_string(image.width) + "x" +
-                                std::to_string(image.height) + " pixels does not fit");
+                                std::to_string(image.height) + " pixels does not match the video");
   }
   if (e.output == nullptr || e.failed) {
     throw std::runtime_error(e.what + ": it is finished or has failed");

@@ -26,7 +26,7 @@ string(CONCAT script "\n/*\n${licence}*/\n${libraries}(() => {\n\"use strict\";\
 string(CONCAT scene_script "\n/*\n${scene_licence}*/\n${scene}")
 foreach(text IN ITEMS script scene_script)
   if(${text} MATCHES "</[Ss][Cc][Rr][Ii][Pp][Tt]|<!--")
-    message(FATAL_ERROR "a script of the page would end its own element")
+    message(FATAL_ERROR "a script of the page contains </script or <!--, which ends its element")
   endif()
 endforeach()
 

@@ -167,4 +167,4 @@ def on_post_build(config):
             elif anchor and goal in pages and anchor not in pages[goal].anchors:
                 wrong.append(f"{file.relative_to(site)}: {link}: no such anchor")
     if wrong:
-        raise PluginError("links without a goal:\n  " + "\n  ".join(sorted(set(wrong))))
+        raise PluginError("broken links:\n  " + "\n  ".join(sorted(set(wrong))))

@@ -260,19 +260,18 @@ class OwnFolder {
 }  // namespace qsmpc::harness
 
 int main(int argc, char** argv) {
-  CLI::App app{"What the statistics of a large campaign take."};
+  CLI::App app{"Time and memory for the statistics of a large campaign."};
   qsmpc::harness::ScaleArguments arguments;
-  app.add_option("--episodes", arguments.episodes, "of all variants together")
+  app.add_option("--episodes", arguments.episodes, "episodes over all variants")
       ->check(CLI::PositiveNumber);
   app.add_option("--variants", arguments.variants)->check(CLI::Range(1, 500));
-  app.add_option("--periods", arguments.periods, "of an episode")->check(CLI::Range(1, 1000));
+  app.add_option("--periods", arguments.periods, "periods per episode")->check(CLI::Range(1, 1000));
   app.add_option("--stores", arguments.stores)->check(CLI::Range(1, 100000));
-  app.add_option("--out", arguments.out,
-                 "a folder that is not there yet, which is kept; default: a temporary one");
-  app.add_flag("--make-only", arguments.make_only, "make the stores, measure nothing");
+  app.add_option("--out", arguments.out, "a new folder, which is kept; default: a temporary one");
+  app.add_flag("--make-only", arguments.make_only, "make the stores without measuring");
   CLI11_PARSE(app, argc, argv);
   if (!arguments.out.empty() && std::filesystem::exists(arguments.out)) {
-    fmt::print(stderr, "campaign_scale: {} is there already\n", arguments.out);
+    fmt::print(stderr, "campaign_scale: {} already exists\n", arguments.out);
     return 2;
   }
   std::optional<qsmpc::harness::OwnFolder> own;

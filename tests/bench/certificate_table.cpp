@@ -259,12 +259,13 @@ bool report_all(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app("Bound over truth of random problems, by class");
   qsmpc::testing::Options options;
-  app.add_option("--problems", options.problems, "of each class")->check(CLI::PositiveNumber);
-  app.add_option("--paths", options.paths, "simulated for the truth")->check(CLI::PositiveNumber);
-  app.add_option("--least", options.least, "of the truths that count");
-  app.add_option("--seed", options.seed, "of the problems");
-  app.add_option("--class", options.classes, "only these");
-  app.add_flag("--each", options.each, "every stage by itself");
+  app.add_option("--problems", options.problems, "problems per class")->check(CLI::PositiveNumber);
+  app.add_option("--paths", options.paths, "simulated paths for the truth")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--least", options.least, "smallest truth that counts");
+  app.add_option("--seed", options.seed, "seed of the problems");
+  app.add_option("--class", options.classes, "only these classes");
+  app.add_flag("--each", options.each, "print every stage");
   CLI11_PARSE(app, argc, argv);
   return qsmpc::testing::report_all(options) ? 0 : 1;
 }

@@ -153,7 +153,7 @@ bool report(const Vehicle& vehicle, const Place& place, bool closed_loop, const 
         "{:5} {:9.2e} {:9.2e} {:7.2f}  {:4} {:9.2e} {:9.2e} {:9.2e} {:9.2e} {:9.2e} {:7.3f}{}\n",
         k + 1, truth, stage.value, truth > 0.0 ? stage.value / truth : kInfinity, stage.kind,
         stage.of("c1"), stage.of("c2"), stage.of("c3"), stage.of("c4"), stage.of("thesis"),
-        budgets[k + 1].total, holds ? "" : "  above the promise");
+        budgets[k + 1].total, holds ? "" : "  above the limit");
   }
   return kept;
 }
@@ -186,8 +186,10 @@ bool report_all(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app("Bound, truth and ratio of the certificates");
   qsmpc::testing::Options options;
-  app.add_option("--paths", options.paths, "simulated for the truth")->check(CLI::PositiveNumber);
-  app.add_flag("--all-stages", options.all_stages, "not only the first and the last");
+  app.add_option("--paths", options.paths, "simulated paths for the truth")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--all-stages", options.all_stages,
+               "print all stages, not only the first and the last");
   CLI11_PARSE(app, argc, argv);
   return qsmpc::testing::report_all(options) ? 0 : 1;
 }

@@ -82,9 +82,9 @@ std::vector<double> times_of(const Case& wanted, int periods) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("times of controllers that keep chance constraints");
+  CLI::App app("times of controllers with chance constraints");
   int periods = 60;
-  app.add_option("--periods", periods, "of each case")->check(CLI::Range(1, 100'000));
+  app.add_option("--periods", periods, "periods per case")->check(CLI::Range(1, 100'000));
   CLI11_PARSE(app, argc, argv);
   fmt::print("{:<42} {:>10} {:>10}\n", "ms", "median", "99 %");
   for (const Case& each : cases()) {

@@ -206,7 +206,7 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   qsmpc::testing::Options options;
-  CLI::App app("How large problems grow, and what more threads make of them");
+  CLI::App app("How times grow with the number of points, and what further threads gain");
   app.add_option("--points", options.points, "Points of belief and prediction")
       ->check(CLI::PositiveNumber);
   app.add_option("--horizon", options.horizon, "Stages")->check(CLI::PositiveNumber);

@@ -37,7 +37,7 @@ bool measure(const char* name, const std::vector<std::string>& overrides) {
   }
   std::ranges::sort(times);
   const double median = times[times.size() / 2];
-  fmt::print("{:<24} median {:.3f} ms, 99 % {:.3f} ms, most {:.3f} ms\n", name, median,
+  fmt::print("{:<24} median {:.3f} ms, 99 % {:.3f} ms, maximum {:.3f} ms\n", name, median,
              times[times.size() * 99 / 100], times.back());
   return median <= kPromised;
 }
@@ -51,7 +51,7 @@ int main() {
       "controller.command=[python3, -c, \"import sys; sys.stdin.readline(); "
       "print('{\\\"protocol\\\": 1}', flush=True); sys.stdin.readline()\\nfor line in sys.stdin: "
       "print('{\\\"input\\\": [0]}', flush=True)\"]";
-  bool kept = measure("program, no JSON read", {"controller.kind=external", constant});
+  bool kept = measure("program, reads no JSON", {"controller.kind=external", constant});
   kept &= measure("program in Python", {"controller.kind=external",
                                         "controller.command=[python3, " + data + "responder.py]",
                                         "controller.options.mode=good"});

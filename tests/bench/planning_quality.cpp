@@ -64,7 +64,7 @@ bool print(const std::string& name, int horizon, const Shortfall& shortfall, dou
       100.0 * shortfall.relative(), limit, shortfall.predicted,
       shortfall.predicted_best - shortfall.predicted, shortfall.plan.evaluations,
       controller::solver_status_name(shortfall.plan.status),
-      good ? "" : ", costs more than promised");
+      good ? "" : ", costs more than allowed");
   if (options.inputs) {
     print_inputs("planned", shortfall.plan.policy.inputs);
     print_inputs("best", shortfall.best_inputs);
@@ -120,16 +120,15 @@ bool report_closed_loop(const Options& options) {
 
 int main(int argc, char** argv) {
   qsmpc::testing::Options options;
-  CLI::App app("What plans cost, beside the best policies");
-  app.add_option("--paths", options.paths, "Paths that the search sees")
-      ->check(CLI::PositiveNumber);
+  CLI::App app("Costs of plans compared with the best policies");
+  app.add_option("--paths", options.paths, "Paths used by the search")->check(CLI::PositiveNumber);
   app.add_option("--starts", options.starts, "Random starts of the search")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--points", options.points, "Points of belief, noise and prediction")
       ->check(CLI::PositiveNumber);
   app.add_option("--evaluations", options.evaluations, "Evaluations of the cost in one plan")
       ->check(CLI::PositiveNumber);
-  app.add_option("--propagator", options.propagator, "Propagator that predicts");
+  app.add_option("--propagator", options.propagator, "Propagator for the prediction");
   app.add_option("--horizon", options.horizons, "Horizons")->check(CLI::PositiveNumber);
   app.add_flag("--inputs", options.inputs, "Print the inputs");
   CLI11_PARSE(app, argc, argv);

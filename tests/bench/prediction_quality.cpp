@@ -114,7 +114,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   app.add_option("--law", options.law, "Samples of the true law for the ideal points")
       ->check(CLI::PositiveNumber);
-  app.add_option("--propagator", options.propagator, "Propagator that predicts");
+  app.add_option("--propagator", options.propagator, "Propagator for the prediction");
   CLI11_PARSE(app, argc, argv);
   bool nearer = true;
   try {

@@ -74,10 +74,9 @@ bool report(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("How long a period takes the controllers that sample");
-  app.add_option("--periods", options.periods, "Periods that are timed")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--at-most", options.at_most, "ms that a median of mppi may take");
+  CLI::App app("Time per period of the sampling controllers");
+  app.add_option("--periods", options.periods, "Periods to time")->check(CLI::PositiveNumber);
+  app.add_option("--at-most", options.at_most, "Limit on the medians of mppi, ms");
   CLI11_PARSE(app, argc, argv);
   return report(options) ? 0 : 1;
 }

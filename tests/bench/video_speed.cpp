@@ -150,7 +150,7 @@ struct Parts {
   Part encoding{"conversion, encoding"};
 
   void print(int frames) const {
-    std::cout << "ms a frame, one after the other    wall  processor\n";
+    std::cout << "ms per frame, in sequence   wall  processor\n";
     for (const Part* part :
          {&vehicle, &scene, &scene_with_points, &reading, &smoothing, &hud, &encoding}) {
       part->print(frames);
@@ -237,9 +237,10 @@ bool run(const Options& options) {
   const VideoTimings timings =
       write_episode_video(view, video, folder / ("whole." + options.format));
   const double spent = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor;
-  std::cout << fmt::format("{}, {} points, {}, {} threads\n{}\n  {:.1f} ms of processor a frame\n",
-                           options.size, options.points, options.format, options.threads,
-                           video_line(timings), 1e3 * spent / timings.frames);
+  std::cout << fmt::format(
+      "{}, {} points, {}, {} threads\n{}\n  {:.1f} ms of processor time per frame\n", options.size,
+      options.points, options.format, options.threads, video_line(timings),
+      1e3 * spent / timings.frames);
   return timings.frames_per_second() >= options.at_least;
 }
 
@@ -248,14 +249,15 @@ bool run(const Options& options) {
 
 int main(int argc, char** argv) {
   qsmpc::harness::Options options;
-  CLI::App app("Speed of drawing and encoding a video, and how it splits");
-  app.add_option("--points", options.points, "Particles in a frame")->check(CLI::PositiveNumber);
+  CLI::App app("Speed of drawing and encoding a video, in total and by part");
+  app.add_option("--points", options.points, "Particles per frame")->check(CLI::PositiveNumber);
   app.add_option("--size", options.size, "WIDTHxHEIGHT in pixels");
-  app.add_option("--frames", options.frames, "Frames of the episode, at 30 a second")
+  app.add_option("--frames", options.frames, "Frames of the episode, at 30 per second")
       ->check(CLI::PositiveNumber);
   app.add_option("--format", options.format, "mp4, webm, gif or webp");
-  app.add_option("--threads", options.threads, "Threads that draw")->check(CLI::PositiveNumber);
-  app.add_option("--at-least", options.at_least, "Frames a second, below which it has failed");
+  app.add_option("--threads", options.threads, "Drawing threads")->check(CLI::PositiveNumber);
+  app.add_option("--at-least", options.at_least,
+                 "Frames per second below which the benchmark fails");
   CLI11_PARSE(app, argc, argv);
   try {
     return qsmpc::harness::run(options) ? EXIT_SUCCESS : EXIT_FAILURE;

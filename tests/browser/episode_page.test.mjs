@@ -175,7 +175,7 @@ test("what is no bound is not called one", async () => {
   const {page, seen} = await openPage(browser, join(noisy, "report.html"));
   assert.deepEqual(seen.errors, []);
   assert.match(await page.locator("#no-bound").textContent(), /No certificate is a bound here/);
-  assert.match(await page.locator("#now").textContent(), /Certified, next step: no bound/);
+  assert.match(await page.locator("#now").textContent(), /Certified, next step: not a bound/);
   assert.doesNotMatch(await page.locator("#now").textContent(), /P\(unsafe\)/);
   await page.close();
 });

@@ -315,7 +315,7 @@ TEST_F(Cluster, what_is_there_of_it_can_be_gathered) {
   const ProcessResult part = run_qsmpc({"campaign", "gather", out});
   EXPECT_EQ(part.exit_code, 130) << part.errors;
   EXPECT_THAT(part.errors, HasSubstr("of 24 episodes are missing"));
-  EXPECT_THAT(part.errors, HasSubstr("looking for up to 1 s whether task 1"));
+  EXPECT_THAT(part.errors, HasSubstr("checking for up to 1 s whether task 1"));
   EXPECT_GE(nlohmann::json::parse(testing::read_text(out + "/campaign.json"))["done"], 8);
   EXPECT_EQ(work(2).exit_code, 0);
   ASSERT_EQ(gather().exit_code, 0);

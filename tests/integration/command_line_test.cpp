@@ -117,10 +117,10 @@ TEST(Export, writes_tables_beside_the_trace_or_where_it_is_told) {
 TEST(Init, replaces_nothing_and_takes_a_path) {
   const TemporaryFolder folder;
   const std::string file = folder.file("mine.yaml", "precious");
-  expect_refused({"init", file}, "a file that exists");
+  expect_refused({"init", file}, "an existing file");
   EXPECT_EQ(read_text(file), "precious");
   std::filesystem::create_symlink(folder / "nowhere", folder / "link.yaml");
-  expect_refused({"init", folder / "link.yaml"}, "a file that exists");
+  expect_refused({"init", folder / "link.yaml"}, "an existing file");
   EXPECT_FALSE(std::filesystem::exists(folder / "nowhere"));
   EXPECT_EQ(run_qsmpc({"init"}, {.folder = folder.path()}).exit_code, 0);
   EXPECT_THAT(read_text(folder / "my_scenario.yaml"), HasSubstr("name: \"my_scenario\""));

@@ -69,7 +69,7 @@ TEST(Commands, warn_of_limits_that_the_start_exceeds) {
                  "--fail-on", "none", "--out", folder / "out"});
   EXPECT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.errors, HasSubstr("qsmpc: warning: the start is unsafe with a certified "
-                                    "probability up to 0.159, above the limit of 0.1\n"));
+                                    "probability of up to 0.159, above the limit of 0.1\n"));
 }
 
 TEST(Commands, a_folder_without_a_trace_is_a_bad_input) {

@@ -106,7 +106,7 @@ TEST(Compare, prints_a_table_and_uses_the_named_folder_by_default) {
   const TemporaryFolder folder;
   const ProcessResult result = compare("dubins_corridor", "", {}, {.folder = folder.path()});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output, HasSubstr("analytic: the model, but for rounding"));
+  EXPECT_THAT(result.output, HasSubstr("analytic: matches the model except for rounding"));
   // With digits that depend on the settings.
   EXPECT_THAT(result.output,
               ContainsRegex("out/dubins_corridor-compare-[0-9a-f]+/comparison.json"));

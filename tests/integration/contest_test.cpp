@@ -63,8 +63,9 @@ TEST(Contest, leaves_a_page_numbers_and_the_stores_of_its_drives) {
   EXPECT_TRUE(testing::files_below(out, ".partial").empty());
   EXPECT_THAT(result.errors, AllOf(HasSubstr("tuning: 4 of 4"), HasSubstr("driving: 6 of 6"),
                                    HasSubstr("timing: 2 of 2")));
-  EXPECT_THAT(result.output, AllOf(HasSubstr("Fewest unsafe drives: quantised, lqr (0 %)"),
-                                   HasSubstr("lqr: Not told apart from quantised")));
+  EXPECT_THAT(result.output,
+              AllOf(HasSubstr("Fewest unsafe drives: quantised, lqr (0 %)"),
+                    HasSubstr("lqr: No significant difference in safety from quantised")));
   EXPECT_EQ(testing::rows_of(out + "/tuning").size(), 2U + 4U + 4U * 6U + 4U);
 }
 

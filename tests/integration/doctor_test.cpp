@@ -111,8 +111,8 @@ TEST(Doctor, run_warns_of_a_time_step_at_which_the_plant_diverges) {
     return run_qsmpc({"run", scenario, "--no-video", "--set", "plant.time_step=" + time_step,
                       "--out", folder.path() + "/out" + time_step});
   };
-  EXPECT_THAT(run("0.01").errors, HasSubstr("warning: the plant breaks within 8 periods"));
-  EXPECT_THAT(run("0.001").errors, Not(HasSubstr("the plant breaks")));
+  EXPECT_THAT(run("0.01").errors, HasSubstr("warning: the plant fails within 8 periods"));
+  EXPECT_THAT(run("0.001").errors, Not(HasSubstr("the plant fails")));
 }
 
 /// A differential robot whose wheels turn too slowly for its speed.
@@ -157,7 +157,7 @@ TEST(Doctor, prints_every_answer_and_gains_that_work) {
                       json.at("suggestion").at("plant").get<std::string>());
   const ProcessResult right = run_qsmpc({"doctor", mended});
   EXPECT_EQ(right.exit_code, 0) << right.output << right.errors;
-  EXPECT_THAT(right.output, HasSubstr("ok: sign, size and delay are those of the model"));
+  EXPECT_THAT(right.output, HasSubstr("ok: sign, size and delay match the model"));
 }
 
 TEST(Doctor, an_analytic_plant_has_nothing_to_check) {

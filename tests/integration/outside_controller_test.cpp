@@ -85,7 +85,7 @@ TEST(OutsideController, that_fails_is_said_in_one_line_with_code_1) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.errors,
               HasSubstr("qsmpc: the controller failed: controller python3 responder.py: period 2: "
-                        "found its end with exit code 7 after \"ZeroDivisionError: division by "
+                        "found an exit with code 7 after \"ZeroDivisionError: division by "
                         "zero\", expected an answer\n"));
   const auto summary = summary_in(folder / "out");
   EXPECT_EQ(summary["outcome"], "fault");

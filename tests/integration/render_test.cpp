@@ -128,7 +128,7 @@ TEST_F(Render, an_interrupt_leaves_the_video_that_was_there) {
                                          }});
   EXPECT_EQ(result.exit_code, 130);
   EXPECT_EQ(result.output, "");
-  EXPECT_THAT(result.errors, HasSubstr("qsmpc: interrupted: " + video + " is left as it was\n"));
+  EXPECT_THAT(result.errors, HasSubstr("qsmpc: interrupted: " + video + " is unchanged\n"));
   EXPECT_EQ(read_text(video), bytes);
   EXPECT_EQ(read_text(episode() + "/video.json"), numbers);
   EXPECT_FALSE(std::filesystem::exists(video + ".partial"));
@@ -152,8 +152,8 @@ TEST_F(Render, too_little_address_space_is_told_in_a_line) {
          {render({"--quiet"}, options), run_qsmpc(small_run(path("none")), options)}) {
       EXPECT_EQ(result.exit_code, 3) << limit;
       EXPECT_THAT(result.errors, ContainsRegex("^qsmpc: drawing 320x180 pixels on 2 threads takes "
-                                               "about [0-9]+ MB of address space, and the limit of "
-                                               "the process .ulimit -v. leaves [0-9]+ MB\n$"));
+                                               "about [0-9]+ MB of address space, but the process "
+                                               "limit .ulimit -v. leaves [0-9]+ MB\n$"));
     }
   }
   EXPECT_FALSE(std::filesystem::exists(path("none")));

@@ -94,7 +94,7 @@ TEST(Reproduce, interrupted_keeps_the_experiments_that_are_finished) {
   EXPECT_EQ(json["complete"], false);
   EXPECT_EQ(json["experiments"].size(), 1U);
   EXPECT_THAT(read_text(folder.path() + "/results.html"),
-              HasSubstr("Not all that was asked for is here yet"));
+              HasSubstr("Not all of the requested experiments have finished"));
 }
 
 TEST(Reproduce, killed_it_leaves_whole_files_only) {

@@ -114,7 +114,7 @@ TEST(ResultFolders, one_with_a_foreign_scenario_file_or_a_campaign_is_refused) {
   (void)folder.file("scenario.yaml", mine);
   const ProcessResult foreign = run_qsmpc(quick("run", folder.path()));
   EXPECT_EQ(foreign.exit_code, 2);
-  EXPECT_THAT(foreign.errors, HasSubstr("found a scenario.yaml that is no resolved scenario"));
+  EXPECT_THAT(foreign.errors, HasSubstr("found a scenario.yaml that is not a resolved scenario"));
   EXPECT_EQ(read_text(folder / "scenario.yaml"), mine);
 
   const TemporaryFolder store;

@@ -349,8 +349,9 @@ TEST(Run, sizes_beyond_the_memory_are_refused_before_anything_is_done) {
        "controller.quantisation={state: 100000, noise: 10000, compressed: 100000}"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(lines(result.errors), 1) << result.errors;
-  EXPECT_THAT(result.errors, ContainsRegex("controller.quantisation: found sizes that need about "
-                                           ".* GB of memory"));
+  EXPECT_THAT(result.errors,
+              ContainsRegex("controller.quantisation: found settings that need about "
+                            ".* GB of memory"));
   EXPECT_FALSE(exists(out));
 }
 
@@ -380,7 +381,7 @@ TEST(Run, a_fault_of_the_plant_is_an_outcome_with_mujocos_words) {
        "-1e18}]"},
       {.folder = folder.path()});
   EXPECT_EQ(result.exit_code, 1) << result.errors;
-  EXPECT_THAT(result.errors, HasSubstr("warning: the plant breaks"));
+  EXPECT_THAT(result.errors, HasSubstr("warning: the plant fails"));
   const auto summary = nlohmann::json::parse(read_text(folder.path() + "/out/summary.json"));
   EXPECT_EQ(summary["outcome"], "fault");
   EXPECT_FALSE(exists(folder.path() + "/MUJOCO_LOG.TXT"));

@@ -236,7 +236,7 @@ const std::vector<QuantiserEntry>& quantisers() {
   static const std::vector<QuantiserEntry> table = {
       {"product", "grid of optimal points on each axis of the covariance; fast, W2 exact",
        QuantiserKind::kProduct},
-      {"lloyd", "points spread by Lloyd's method: less W2, and a slow first call",
+      {"lloyd", "points placed by Lloyd's method: smaller W2, but a slow first call",
        QuantiserKind::kLloyd},
   };
   return table;

@@ -153,6 +153,11 @@ void RiskConstraint::start(bool warm) {
   }
 }
 
+StageRows RiskConstraint::stage_rows() const {
+  return {.begin = std::isfinite(limits_.first) ? 1 : 0,
+          .count = std::isfinite(limits_.stage) ? Eigen::Index{settings_.horizon} : 0};
+}
+
 const Eigen::VectorXd& RiskConstraint::values(const Eigen::VectorXd& z) {
   const Eigen::VectorXd& risks = model_.risks(z);
   Eigen::Index j = 0;

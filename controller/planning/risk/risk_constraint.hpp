@@ -49,6 +49,9 @@ class RiskConstraint final : public SummedConstraints {
   void set_margin(double margin) { margin_ = margin; }
 
   [[nodiscard]] Eigen::Index count() const override { return values_.size(); }
+  /// The constraints that limit one stage each, in the order of the stages; none without a limit of
+  /// all stages.
+  [[nodiscard]] StageRows stage_rows() const;
   /// c at a decision.
   const Eigen::VectorXd& values(const Eigen::VectorXd& z) override;
   /// Adds Σ_j multipliers_j ∂c_j/∂z at the decision of the last call of `values`.

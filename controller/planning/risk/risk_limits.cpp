@@ -13,7 +13,7 @@ const std::vector<RiskOtherwiseEntry>& risk_otherwise_entries() {
   static const std::vector<RiskOtherwiseEntry> table = {
       {"least_risk", "the plan with the least certificate", RiskOtherwise::kLeastRisk},
       {"brake", "the plan that comes to rest soonest", RiskOtherwise::kBrake},
-      {"previous", "the last plan within its limits goes on", RiskOtherwise::kPrevious},
+      {"previous", "the last plan within its limits is continued", RiskOtherwise::kPrevious},
       {"model", "the plan within the limits for the model without its error",
        RiskOtherwise::kModel},
   };

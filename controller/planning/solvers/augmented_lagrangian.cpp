@@ -34,9 +34,11 @@ void AugmentedLagrangian::start(SummedConstraints& constraint, double cost, bool
   weight_ = std::clamp(weight_, kLeastWeightShare * scale, kMostWeightShare * scale);
 }
 
-void AugmentedLagrangian::shift(Eigen::Index of_stage) {
-  for (Eigen::Index j = 0; j + of_stage < multipliers_.size(); ++j) {
-    multipliers_[j] = multipliers_[j + of_stage];
+void AugmentedLagrangian::shift(const StageRows& rows) {
+  const Eigen::Index end = rows.begin + rows.count;
+  if (end > multipliers_.size()) return;
+  for (Eigen::Index j = rows.begin; j + rows.of_stage < end; ++j) {
+    multipliers_[j] = multipliers_[j + rows.of_stage];
   }
 }
 

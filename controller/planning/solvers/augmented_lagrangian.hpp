@@ -27,6 +27,13 @@ class SummedConstraints {
   virtual void add_gradient(const Eigen::VectorXd& multipliers, Eigen::VectorXd& gradient) = 0;
 };
 
+/// Successive constraints that belong to stages, `of_stage` to each: of count / of_stage stages.
+struct StageRows {
+  Eigen::Index begin = 0;
+  Eigen::Index count = 0;
+  Eigen::Index of_stage = 1;
+};
+
 class AugmentedLagrangian {
  public:
   /// Starts a plan whose cost is roughly `cost`, with `constraint`, which must stay alive. warm:
@@ -35,9 +42,9 @@ class AugmentedLagrangian {
 
   /// Resets the multipliers to 0, but keeps the weight ρ.
   void release() { multipliers_.setZero(); }
-  /// Shifts the multipliers by one stage, for `of_stage` constraints per stage; those of the last
-  /// stage are kept.
-  void shift(Eigen::Index of_stage);
+  /// Shifts the multipliers of `rows` by one stage; those of the last stage are kept, as are all
+  /// others. Does nothing unless there are multipliers for all of them.
+  void shift(const StageRows& rows);
 
   /// Returns the constraints' contribution to the cost at z, and adds its gradient to `gradient`.
   double add(const Eigen::VectorXd& z, Eigen::VectorXd& gradient);

@@ -27,8 +27,8 @@ std::unique_ptr<OcpSolver> make_lbfgs(const SolverSettings& settings) {
   if (bounding == "sigmoid") return std::make_unique<LbfgsSolver>(InputBounding::kSigmoid);
   if (bounding == "tanh") return std::make_unique<LbfgsSolver>(InputBounding::kTanh);
   if (bounding == "penalty") return std::make_unique<LbfgsSolver>(InputBounding::kPenalty);
-  throw std::invalid_argument("no bounding '" + bounding +
-                              "' of inputs; known are: " + known_names(input_boundings()));
+  throw std::invalid_argument("no input bounding '" + bounding +
+                              "'; known: " + known_names(input_boundings()));
 }
 
 }  // namespace
@@ -56,11 +56,11 @@ const char* solver_status_name(SolverStatus status) {
 const std::vector<SolverEntry>& solvers() {
   static const std::vector<SolverEntry> table = {
       {.name = "lbfgs",
-       .summary = "quasi-Newton; bounds of the inputs kept as its bounding says",
+       .summary = "quasi-Newton; the input bounding determines how input bounds are kept",
        .make = make_lbfgs,
        .chooses_bounding = true},
       {.name = "slsqp",
-       .summary = "NLopt's sequential quadratic programming; takes inequality constraints",
+       .summary = "NLopt's sequential quadratic programming; supports inequality constraints",
        .make = [](const SolverSettings&) -> std::unique_ptr<OcpSolver> {
          return std::make_unique<SlsqpSolver>();
        },
@@ -75,9 +75,10 @@ const SolverEntry& solver_entry(std::string_view name) {
 
 const std::vector<InputBoundingEntry>& input_boundings() {
   static const std::vector<InputBoundingEntry> table = {
-      {"bounded", "inputs held at their bounds: dense BFGS whose steps keep the box (own)"},
-      {"sigmoid", "inputs through a sigmoid (Eq. 5-3), NLopt's limited-memory BFGS"},
-      {"tanh", "inputs through a hyperbolic tangent, NLopt's limited-memory BFGS"},
+      {"bounded",
+       "inputs held at their bounds: built-in dense BFGS whose steps stay within the box"},
+      {"sigmoid", "inputs mapped through a sigmoid (Eq. 5-3), NLopt's limited-memory BFGS"},
+      {"tanh", "inputs mapped through a hyperbolic tangent, NLopt's limited-memory BFGS"},
       {"penalty",
        "excess over the bounds penalised, the result clamped, NLopt's limited-memory BFGS"},
   };
@@ -90,14 +91,15 @@ std::unique_ptr<OcpSolver> make_solver(std::string_view name, const SolverSettin
 
 void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,
                    const SolverOptions& options, ConstraintsTaken taken) {
-  check(start.size() >= 1, "there is nothing to decide");
+  check(start.size() >= 1, "there are no decision variables");
   check(problem.lower.size() == start.size() && problem.upper.size() == start.size(),
-        "bounds and start must be of one size");
+        "bounds and start must have the same size");
   // Comparisons with NaN are false, so NaN is rejected as well.
-  check((problem.lower.array() <= problem.upper.array()).all(), "the bounds are crossed");
+  check((problem.lower.array() <= problem.upper.array()).all(),
+        "lower bounds must not exceed upper bounds");
   check(options.max_evaluations >= 1, "at least one evaluation of the cost is needed");
   if (!problem.constraints) return;
-  check(taken == ConstraintsTaken::kInequalities, "this solver takes no constraints");
+  check(taken == ConstraintsTaken::kInequalities, "this solver does not support constraints");
   const ConstraintSet& set = *problem.constraints;
   check(set.count >= 0 && (set.group.empty() || std::ssize(set.group) == set.count),
         "each constraint must be in a group, or none");

@@ -37,7 +37,7 @@ struct ShapeCheck {
   }
   void operator()(const HalfPlaneShape& half_plane) const {
     require_shape(half_plane.normal.allFinite() && half_plane.normal.norm() > 0.0,
-                  "half_plane: a finite normal of a length above 0");
+                  "half_plane: a finite normal with a length above 0");
     require_shape(std::isfinite(half_plane.offset), "half_plane: a finite offset");
   }
 };

@@ -212,7 +212,7 @@ void check_edges(const RoadEdges& edges) {
     if (!holds) throw std::invalid_argument(expected);
   };
   require(edges.left.cols() == edges.right.cols() && edges.left.cols() >= (edges.closed ? 3 : 2),
-          "road: edges of as many points each, at least 2, or 3 where it is closed");
+          "road: edges with equally many points, at least 2, or 3 if it is closed");
   require(edges.left.allFinite() && edges.right.allFinite(), "road: finite edges");
   require(edges.thickness > 0.0 && std::isfinite(edges.thickness), "road: a thickness above 0");
 }
@@ -241,7 +241,7 @@ std::optional<Eigen::Vector2d> where_edges_meet(const RoadEdges& edges) {
 
 RoadWalls::RoadWalls(RoadEdges edges) : edges_(std::move(edges)) {
   check_edges(edges_);
-  if (where_edges_meet(edges_)) throw std::invalid_argument("road: edges that meet nowhere");
+  if (where_edges_meet(edges_)) throw std::invalid_argument("road: edges that do not meet");
   const std::vector<Stretch> all = stretches_of(edges_);
   EdgeWalls(edges_, true, all).add_pieces(pieces_);
   const int border = static_cast<int>(pieces_.size());

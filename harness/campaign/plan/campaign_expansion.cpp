@@ -123,7 +123,7 @@ bool Expansion::is_small_enough() {
     refusals_.add(
         largest_part(draft_),
         fmt::format(
-            "{} x {} variants x {} points of a grid x {} = {}{} variants",
+            "{} x {} variants x {} grid points x {} = {}{} variants",
             draft_.scenarios.size() == 1 ? "1 scenario"
                                          : fmt::format("{} scenarios", draft_.scenarios.size()),
             draft_.variants.size(), points,
@@ -231,11 +231,11 @@ void Expansion::add_settings(const CampaignChoice& scenario, const std::string& 
 void Expansion::refuse_fixed_noise(const CampaignChoice& scenario, const Scenario& resolved) {
   if (!resolved.disturbance.seeds.empty()) {
     refusals_.add(scenario.place, "a scenario with disturbance.seeds",
-                  "one whose noise is drawn by the campaign's seeds");
+                  "one whose noise is drawn from the campaign's seeds");
   }
   if (draft_.rare && std::isfinite(resolved.controller.deadline)) {
-    refusals_.add(scenario.place, "controller.deadline, and rare outcomes",
-                  "no deadline: a drive is driven again and again, and has to be the same");
+    refusals_.add(scenario.place, "controller.deadline together with rare outcomes",
+                  "no deadline, because repeated drives must be identical");
   }
 }
 

@@ -61,11 +61,11 @@ std::vector<KeyDescription> seed_keys() {
   const WholeValue seed{0, kSeedEnd - 1};
   const MappingValue range{{{.name = "first",
                              .values = {seed},
-                             .words = "the first seed, {range}; each that follows is one more",
+                             .words = "the first seed, {range}; the others follow in steps of 1",
                              .fallback = "0"},
                             {.name = "count",
                              .values = {WholeValue{1, kMostCampaignSeeds}},
-                             .words = "how many",
+                             .words = "number of seeds",
                              .required = true}}};
   return {
       {.name = "seeds",
@@ -80,12 +80,12 @@ std::vector<KeyDescription> until_keys() {
   const MappingValue rule{
       {{.name = "rate_halfwidth",
         .values = {NumberValue{kHalfwidthRange}},
-        .words = "half of the width, {range}, that the interval of each variant's rate has at the "
-                 "end",
+        .words = "half-width, {range}, at which the interval of each variant's rate is narrow "
+                 "enough to stop",
         .required = true},
        {.name = "confidence",
         .values = {NumberValue{kStopConfidenceRange}},
-        .words = "of each of these intervals, {range}, at every number of seeds",
+        .words = "confidence of each of these intervals, {range}, valid at every number of seeds",
         .fallback = "0.99"},
        {.name = "of",
         .values = {NameValue{stop_event_names()}},
@@ -93,21 +93,21 @@ std::vector<KeyDescription> until_keys() {
         .fallback = kUnsafeEvent}}};
   return {{.name = "until",
            .values = {rule},
-           .words = "stops once the rates are known well enough, a mapping of the keys below, see "
-                    "[below](#stopping-early); `seeds` then says how many there are at most",
+           .words = "stops once the rates are known precisely enough: a mapping of the keys below, "
+                    "see [below](#stopping-early); `seeds` is then the maximum",
            .fallback_words = "all seeds"}};
 }
 
 std::vector<KeyDescription> trace_keys() {
   return {{.name = "traces",
            .values = {NameValue{trace_keeping_names()}},
-           .words = "whose traces are kept: {names}, a failure being an episode that did not reach "
-                    "the target or was unsafe",
+           .words = "episodes whose traces are kept: {names}; a failure is an episode that did not "
+                    "reach the target or was unsafe",
            .fallback = trace_keeping_name(TraceKeeping::kNone)},
           {.name = "trace_sample",
            .values = {WholeValue{0, kMostCampaignSeeds}},
-           .words = "with `failures`: of each variant, so many first seeds, {range}, keep their "
-                    "trace all the same",
+           .words = "with `failures`: number of first seeds of each variant, {range}, whose traces "
+                    "are kept in any case",
            .fallback = "0"}};
 }
 
@@ -134,27 +134,27 @@ std::vector<KeyDescription> rare_keys() {
   const MappingValue rare{
       {{.name = "particles",
         .values = {WholeValue{2, kMostRareParticles}},
-        .words = "drives that are kept at a time: more make an estimate sharper and cost as much "
-                 "more",
+        .words = "drives kept at a time: more of them give a sharper estimate at proportionally "
+                 "higher cost",
         .fallback = fmt::format("{}", fallback.particles)},
        {.name = "killed",
         .values = {WholeValue{1, kMostRareParticles - 1}},
-        .words = "how many of them, fewer than `particles`, are given up at a level",
+        .words = "number of them, fewer than `particles`, that are discarded at each level",
         .fallback = fmt::format("{}", fallback.killed)},
        {.name = "floor",
         .values = {NumberValue{kRareFloor}},
-        .words = "a run ends where its estimate can only be smaller",
+        .words = "a run ends once its estimate can only be smaller",
         .fallback = fmt::format("{}", fallback.floor)},
        {.name = "certify",
         .values = {FlagValue{}},
-        .words = "whether all of these drives are certified, so that what is certified can be held "
-                 "against the probability",
+        .words = "whether all of these drives are certified, so that the certificates can be "
+                 "compared with the probability",
         .fallback = "true"}}};
   return {{.name = "rare",
            .values = {rare},
            .words = "look for [rare outcomes](rare.md): each seed of a variant also estimates, by "
                     "splitting, how probable an unsafe drive is; a mapping of the keys below",
-           .fallback_words = "they are not looked for"}};
+           .fallback_words = "no search for them"}};
 }
 
 }  // namespace
@@ -181,8 +181,8 @@ const std::vector<KeyDescription>& campaign_keys() {
 nlohmann::ordered_json campaign_schema() {
   nlohmann::ordered_json schema =
       json_schema({.title = "qsmpc campaign",
-                   .description = "Which episodes are driven: scenarios, times settings, times "
-                                  "plants, each with the same seeds."},
+                   .description = "The episodes to drive: scenarios, times settings, times plants, "
+                                  "each with the same seeds."},
                   campaign_keys());
   for (const char* key : {"scenario", "scenarios"}) {
     schema["oneOf"].push_back({{"required", {key}}});

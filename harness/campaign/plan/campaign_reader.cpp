@@ -154,7 +154,7 @@ void CampaignReader::read_traces() {
   draft_.traces = static_cast<TraceKeeping>(std::ranges::find(names, name) - names.begin());
   draft_.trace_sample = root_.whole("trace_sample", 0, {0, kMostCampaignSeeds});
   if (root_.has("trace_sample") && draft_.traces != TraceKeeping::kFailures) {
-    root_.note("trace_sample", "no such key without traces: failures");
+    root_.note("trace_sample", "this key only with traces: failures");
   }
 }
 
@@ -163,7 +163,7 @@ void CampaignReader::read_until() {
   Section until = root_.section("until");
   if (!is_asked_for || !until.present()) return;
   StopCriterion criterion;
-  until.require("rate_halfwidth", "half of the width of each rate's interval, e.g. 0.001");
+  until.require("rate_halfwidth", "half-width of each rate's interval, e.g. 0.001");
   criterion.rate_halfwidth = until.number("rate_halfwidth", kHalfwidthRange.most, kHalfwidthRange);
   criterion.confidence = until.number("confidence", criterion.confidence, kStopConfidenceRange);
   criterion.of = until.name("of", criterion.of, stop_event_names());

@@ -79,7 +79,7 @@ SeedSet read_seed_range(Section section) {
     if (!seed) {
       section.note("first", kSeedExpected);
     } else if (*seed > kSeedEnd - static_cast<std::uint64_t>(seeds.count)) {
-      section.note("first", fmt::format("no seed over {}", kSeedEnd - 1),
+      section.note("first", fmt::format("no seed above {}", kSeedEnd - 1),
                    fmt::format("{} with a count of {}", *seed, seeds.count));
     } else {
       seeds.first = *seed;

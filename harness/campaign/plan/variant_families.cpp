@@ -42,7 +42,8 @@ std::vector<CampaignChoice> members_of(const YamlNode& list, const std::string& 
 
 /// "w20 (known: w2, w20)"; of more than kMostKnownTold, the nearest and then the first ones.
 std::string expected_settings(const std::string& name, const std::vector<std::string>& known) {
-  if (known == std::vector<std::string>{""}) return "variants or a grid, whose settings have names";
+  if (known == std::vector<std::string>{""})
+    return "the name of a setting, but the campaign has no variants or grid";
   if (known.size() <= kMostKnownTold) return expected_names(name, known);
   std::vector<std::string> told = nearest_names(name, known);
   for (const std::string& one : known) {

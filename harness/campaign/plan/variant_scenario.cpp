@@ -102,7 +102,7 @@ void refuse_scenario(const std::string& path, const Settings& settings,
     if (!breaking) breaking = breaking_setting(path, settings);
     if (where.file == path && *breaking != nullptr) {
       refusals.add(place_of(**breaking, (*breaking)->key),
-                   "with it " + where.key + ": " + where.found, where.expected);
+                   "with this setting, " + where.key + ": " + where.found, where.expected);
     } else {
       refusals.add(std::move(where));
     }
@@ -146,7 +146,7 @@ std::optional<std::string> find_beside(const std::string& file, const CampaignCh
   if (auto path = file_beside(file, scenario.text)) return path;
   if (auto path = find_shipped_scenario(scenario.text)) return path;
   refusals.add(scenario.place, scenario.text,
-               "a scenario file beside the campaign, or " +
+               "a scenario file next to the campaign file, or " +
                    expected_names(scenario.text, shipped_scenario_names()));
   return std::nullopt;
 }

@@ -40,7 +40,7 @@ std::vector<RareDrive> found_of(const std::string& text) {
       }
     }
   } catch (const Json::exception&) {
-    throw SQLite::Exception("a list of unsafe drives that is none");
+    throw SQLite::Exception("an invalid list of unsafe drives");
   }
   return found;
 }

@@ -118,11 +118,11 @@ std::optional<RareRow> rare_run(const Scenario& scenario, const RareSettings& se
   } catch (const PathNotRepeated& error) {
     throw InputError(
         {.key = "rare",
-         .found = fmt::format("a drive of {}, seed {}, that is another one from control instant {} "
-                              "on when it is driven again",
+         .found = fmt::format("a drive of {}, seed {}, that differs from control instant {} on "
+                              "when it is driven again",
                               scenario.name, seed, error.instant()),
-         .expected = "a plant and a controller that do the same again for the same seed: no "
-                     "deadline, no random numbers but those of the seed"});
+         .expected = "a plant and a controller that behave identically for the same seed: no "
+                     "deadline, no random numbers except those from the seed"});
   }
   if (!run) return std::nullopt;
   return RareRow{.particles = settings.splitting.particles,

@@ -81,7 +81,7 @@ bool RareStatistics::exceeds_certified() const {
 RareStatistics rare_statistics(const std::vector<std::uint64_t>& seeds,
                                const std::vector<RareRow>& rows) {
   if (rows.empty() || seeds.size() != rows.size()) {
-    throw std::invalid_argument("rare outcomes: no run, or not a seed for each");
+    throw std::invalid_argument("rare outcomes: no runs, or different numbers of runs and seeds");
   }
   RareStatistics statistics{.particles = rows.front().particles};
   for (std::size_t n = 0; n < rows.size(); ++n) {

@@ -32,11 +32,11 @@ std::string rare_line(const VariantStatistics& variant, const RareStatistics& ra
       std::isfinite(rare.gain()) ? fmt::format("{:.3g}", rare.gain()) : "-",
       rare.exceeds_certified() && variant.no_bound.empty() ? " !" : "");
   if (rare.limits == RareLimits::kPlain) {
-    text += fmt::format("     limits of {} plain drives, {} of them unsafe\n", rare.plain_drives,
+    text += fmt::format("     limits from {} plain drives, {} of them unsafe\n", rare.plain_drives,
                         rare.plain_unsafe);
   }
   if (rare.extinct + rare.below_floor > 0) {
-    text += fmt::format("     estimates that are 0: {} runs died out, {} ended at the floor\n",
+    text += fmt::format("     estimates of 0: {} runs died out, {} ended at the floor\n",
                         rare.extinct, rare.below_floor);
   }
   return text;
@@ -50,16 +50,15 @@ std::string rare_table(const CampaignStatistics& statistics) {
     return {};
   }
   std::string text = fmt::format(
-      "\nHow probable an unsafe drive is, by splitting\n     {:<{}}{:>5}{:>10}{:>22}{:>10}{:>10}"
-      "{:>10}{:>8}\n",
+      "\nProbability of an unsafe drive, by splitting\n"
+      "     {:<{}}{:>5}{:>10}{:>22}{:>10}{:>10}{:>10}{:>8}\n",
       "variant", kRareNameWidth, "runs", "unsafe", "99 %", "certified", "periods", "worth", "gain");
   for (const VariantStatistics& variant : statistics.variants) {
     if (variant.rare) text += rare_line(variant, *variant.rare);
   }
   return text +
-         "certified: mean sum of a drive's next-step certificates; worth: plain periods that say "
-         "as "
-         "much.\n";
+         "certified: mean sum of a drive's next-step certificates; worth: plain periods of the "
+         "same precision.\n";
 }
 
 }  // namespace qsmpc::harness

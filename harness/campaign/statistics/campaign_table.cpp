@@ -156,8 +156,8 @@ std::string certificate_section(const CampaignStatistics& statistics) {
 
 std::string calibration_section(const CampaignStatistics& statistics) {
   std::string text = fmt::format(
-      "\nPeriods of all variants by what was certified\n  "
-      "{:<22}{:>10}{:>11}{:>9}{:>11}{:>24}{:>12}\n",
+      "\nPeriods of all variants by certified probability\n"
+      "  {:<22}{:>10}{:>11}{:>9}{:>11}{:>24}{:>12}\n",
       "certified", "periods", "mean", "unsafe", "observed", "99 % (a guide)", "p");
   for (const CalibrationBin& bin : statistics.calibration) {
     if (bin.periods == 0) continue;
@@ -174,7 +174,7 @@ std::string difference_text(const CampaignStatistics& statistics,
                             const VariantDifference& difference) {
   const VariantPair& pair = difference.pair;
   const VariantStatistics& variant = statistics.variants[pair.variant];
-  std::string text = fmt::format("  {} less {} (other {}): {}\n", variant.id,
+  std::string text = fmt::format("  {} minus {} (other {}): {}\n", variant.id,
                                  statistics.variants[pair.baseline].id, differs_by_name(pair.by),
                                  printable(variant.name, kTitleLimit));
   for (const MeanDifference& quantity : difference.quantities) {
@@ -221,11 +221,11 @@ std::string campaign_table(const CampaignStatistics& statistics) {
          spread_section(statistics) + certificate_section(statistics) + rare_table(statistics) +
          calibration_section(statistics) + difference_section(statistics) +
          time_section(statistics) +
-         "collision, left bounds: where the true state first was unsafe, also of a drive that went "
-         "on.\n"
-         "A drive that faulted ranks as the worst. bins exceeded, p: of the certificates alone;\n"
-         "p: small where more periods end unsafe than certified for them; !: chance alone in at "
-         "most 1 of 100.\n";
+         "collision, left bounds: where the true state was first unsafe, even if the drive "
+         "continued.\n"
+         "A drive that faulted ranks worst. bins exceeded, p: of the certificates only;\n"
+         "p: small if more periods end unsafe than certified; !: at most 1 in 100 by chance "
+         "alone.\n";
 }
 
 }  // namespace qsmpc::harness

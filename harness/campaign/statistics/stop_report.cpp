@@ -31,11 +31,11 @@ std::string stop_sentence(const CampaignStatistics& statistics) {
     return fmt::format("Stopped by its rule after {} of at most {} seeds: {}.",
                        *campaign.stopped_after, seeds, aim);
   }
-  return fmt::format("Of at most {} seeds; its rule, {}, has not stopped it.", seeds, aim);
+  return fmt::format("At most {} seeds; its stopping rule, {}, has not stopped it.", seeds, aim);
 }
 
 std::string interval_words(const CampaignStatistics& statistics) {
-  return statistics.campaign.until ? "99 % intervals that hold at any number of seeds"
+  return statistics.campaign.until ? "99 % intervals valid at any number of seeds"
                                    : "99 % intervals";
 }
 

@@ -113,7 +113,7 @@ std::optional<LockHolder> lock_holder(const std::string& folder) {
   const int error = errno;
   const LockHolder holder = read_holder(descriptor);
   ::close(descriptor);
-  if (status != 0) fail(path, "be asked for its lock", error);
+  if (status != 0) fail(path, "be checked for a lock", error);
   if (lock.l_type == F_UNLCK) return std::nullopt;
   return holder;
 }

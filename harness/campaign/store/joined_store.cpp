@@ -122,7 +122,7 @@ void JoinedStore::refuse_duplicates(const Numbers& variants, const std::string& 
       variants);
   if (!twice) return;
   throw InputError({.file = folder,
-                    .found = fmt::format("variant {}, seed {}, which another shard has, too",
+                    .found = fmt::format("variant {}, seed {}, which another shard also has",
                                          twice->variant, twice->seed),
                     .expected = "each episode once"});
 }
@@ -142,8 +142,9 @@ void JoinedStore::refuse_contradictions(const Numbers& variants, const std::stri
     if (!found) continue;
     throw InputError({.file = folder,
                       .key = fmt::format("variant {}, seed {}", found->variant, found->seed),
-                      .found = fmt::format("another {} than a folder before it has", table),
-                      .expected = "the same episode, but for timings"});
+                      .found = fmt::format(
+                          "a row of table {} that differs from that of an earlier folder", table),
+                      .expected = "the same episode, except for timings"});
   }
 }
 

@@ -109,7 +109,7 @@ void require_all_shards(const std::vector<std::string>& folders, const Joined& s
     if (is_new) continue;
     throw InputError(
         {.file = folders[i],
-         .found = shard_text(stores.shards[i]) + ", which " + first->second + " holds, too",
+         .found = shard_text(stores.shards[i]) + ", which " + first->second + " also holds",
          .expected = fmt::format("each of {} shards once", count)});
   }
   for (std::int64_t index = 1; index <= count; ++index) {
@@ -126,7 +126,7 @@ void require_one_shard(const std::vector<std::string>& folders, const Joined& st
     if (stores.shards[i] == stores.campaign.shard) continue;
     throw InputError({.file = folders[i],
                       .found = shard_text(stores.shards[i]),
-                      .expected = shard_text(stores.campaign.shard) + ", as " + folders[0]});
+                      .expected = shard_text(stores.campaign.shard) + ", like " + folders[0]});
   }
 }
 
@@ -138,10 +138,11 @@ void require_seeds(SQLite::Database& database, const StoredVariant& variant,
   SQLite::Statement statement(database, "SELECT seed FROM episode WHERE variant = ? ORDER BY seed");
   statement.bind(1, variant.id);
   const auto refuse = [&](const std::string& found) {
-    throw InputError({.key = "variant " + variant.name,
-                      .found = found,
-                      .expected = "each seed of the campaign once; qsmpc campaign drives what is "
-                                  "missing of a shard"});
+    throw InputError(
+        {.key = "variant " + variant.name,
+         .found = found,
+         .expected =
+             "each seed of the campaign once; qsmpc campaign drives a shard's missing episodes"});
   };
   std::optional<std::uint64_t> seed;
   const auto step = [&] {
@@ -162,7 +163,8 @@ void require_seeds(SQLite::Database& database, const StoredVariant& variant,
       refuse(fmt::format("no episode with seed {}", expected));
     }
   }
-  if (seed) refuse(fmt::format("an episode with the foreign seed {}", *seed));
+  if (seed)
+    refuse(fmt::format("an episode with seed {}, which is not one of the campaign's", *seed));
 }
 
 /// Folds the log of a store that will be replaced into its file: a leftover log would be taken for

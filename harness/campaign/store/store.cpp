@@ -269,8 +269,8 @@ Store::Store(const std::string& folder, const StoredCampaign& campaign,
       const bool differs = difference_of(stored, asked).has_value();
       if (differs && !update) {
         refuse_other_campaign(path, stored, asked,
-                              "; --update goes on with the changed campaign and keeps the episodes "
-                              "that it still asks for");
+                              "; --update continues with the changed campaign and keeps the "
+                              "episodes that it still asks for");
       }
       if (differs) {
         implementation_->change(campaign, variants, seeds);

@@ -69,7 +69,7 @@ class NumberReader {
     if (!text_.empty()) refuse();
   }
   [[noreturn]] static void refuse() {
-    throw SQLite::Exception("periods of an episode that are no list of numbers");
+    throw SQLite::Exception("an episode's periods are not a list of numbers");
   }
 
  private:

@@ -26,7 +26,7 @@ std::string existing_store(const std::string& folder) {
   std::string path = folder + "/" + kStoreFile;
   if (is_file(path)) return path;
   throw InputError({.file = path,
-                    .found = "no store of a campaign",
+                    .found = "no campaign store",
                     .expected = "the folder that qsmpc campaign writes"});
 }
 
@@ -39,7 +39,7 @@ const char* column_of(EpisodeNumber number) {
     case EpisodeNumber::kTimeToTarget:
       return "time_to_target";
   }
-  throw std::invalid_argument("store: a number that is no column");
+  throw std::invalid_argument("store: not a column");
 }
 
 /// Valid until the statement's next step.
@@ -95,9 +95,9 @@ struct StoreReader::Implementation {
     if (schema < store_schema()) {
       throw InputError({.file = path,
                         .found = fmt::format("a store of the older schema {}", schema),
-                        .expected = fmt::format("schema {}; qsmpc campaign brings it up to date "
-                                                "when it is started on the folder again",
-                                                store_schema())});
+                        .expected = fmt::format(
+                            "schema {}; start qsmpc campaign on the folder again to update it",
+                            store_schema())});
     }
     campaign = read_campaign(database);
     variants = read_variants(database);
@@ -133,10 +133,10 @@ void StoreReader::verify() const {
   with_store_errors(implementation_->path,
                     [&] { damaged = damaged_episode(implementation_->path, available_threads()); });
   if (!damaged) return;
-  throw IoError(fmt::format(
-      "{}: the rows of variant {}, seed {} are not those that were written: the file is damaged; "
-      "use a copy, or drive the campaign again",
-      printable(implementation_->path, 400), damaged->variant + 1, damaged->seed));
+  throw IoError(
+      fmt::format("{}: the rows of variant {}, seed {} differ from those that were written: the "
+                  "file is damaged; use a copy, or run the campaign again",
+                  printable(implementation_->path, 400), damaged->variant + 1, damaged->seed));
 }
 
 const StoredCampaign& StoreReader::campaign() const { return implementation_->campaign; }
@@ -219,7 +219,7 @@ void StoreReader::for_each_period(std::int64_t variant,
         read_periods(text_in(row.getColumn(1)), text_in(row.getColumn(2)), periods);
         read_ocp_ms(text_in(row.getColumn(3)), times);
         if (times.size() != periods.size()) {
-          throw SQLite::Exception("an episode with more periods than times, or fewer");
+          throw SQLite::Exception("an episode with different numbers of periods and times");
         }
         const auto seed = static_cast<std::uint64_t>(row.getColumn(0).getInt64());
         for (std::size_t k = 0; k < periods.size(); ++k) {

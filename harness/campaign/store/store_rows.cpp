@@ -121,7 +121,7 @@ std::vector<PathPoint> path_of(const std::string& text) {
     return point.is_array() && point.size() == 2 && point[0].is_number() && point[1].is_number();
   };
   if (!points.is_array() || !std::ranges::all_of(points, is_point)) {
-    throw SQLite::Exception("a path that is no list of points");
+    throw SQLite::Exception("a path that is not a list of points");
   }
   std::vector<PathPoint> path;
   path.reserve(points.size());

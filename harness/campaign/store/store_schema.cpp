@@ -226,7 +226,7 @@ int schema_of(SQLite::Database& database, const std::string& path) {
   const int tables = database.execAndGet("SELECT count(*) FROM sqlite_master").getInt();
   if (tables == 0 && schema == 0 && application == 0) return 0;
   throw InputError({.file = path,
-                    .found = "an SQLite file of another program",
+                    .found = "an SQLite file from another program",
                     .expected = "the store of a campaign"});
 }
 

@@ -86,7 +86,7 @@ std::vector<LaunchHost> hosts_of_file(const std::string& file) {
     const std::string_view host = trimmed_host(content.substr(0, content.find('#')));
     if (!host.empty()) hosts.push_back(parse_host({.file = file, .line = line}, host));
   }
-  if (hosts.empty()) refuse_host({.file = file}, "no host", "one host a line");
+  if (hosts.empty()) refuse_host({.file = file}, "no host", "one host per line");
   return hosts;
 }
 

@@ -59,7 +59,7 @@ void check_kind(const LaunchOptions& options) {
   for (const auto& [name, value, kinds] : all) {
     if (value.empty() || kinds.find(kind) != std::string_view::npos) continue;
     if (std::string_view(name) == "--tasks") {
-      refuse_option(name, value, "none with --on ssh; N/HOST is N workers on HOST");
+      refuse_option(name, value, "none with --on ssh; N/HOST starts N workers on HOST");
     }
     refuse_option(name, value, fmt::format("none with --on {}", kind));
   }
@@ -74,7 +74,7 @@ void check_number(const char* option, int value) {
 void check_slurm_word(const char* option, const std::string& value) {
   static const std::regex names("[A-Za-z0-9_.:@+-]+(,[A-Za-z0-9_.:@+-]+)*");
   if (!value.empty() && !std::regex_match(value, names)) {
-    refuse_option(option, value, "names as Slurm has them, separated by commas");
+    refuse_option(option, value, "names as used by Slurm, separated by commas");
   }
 }
 

@@ -88,7 +88,7 @@ std::vector<std::string> task_command(const ProcessLauncherOptions& options, con
 std::string ProcessLauncher::start(const LaunchRequest& request) {
   const std::vector<LaunchHost> hosts = hosts_by_task(options_.hosts);
   if (hosts.size() != static_cast<std::size_t>(request.tasks)) {
-    throw std::logic_error("a request of other tasks than its launcher's");
+    throw std::logic_error("a request whose tasks differ from the launcher's");
   }
   LaunchRecord record{.kind = options_.kind,
                       .launch = begin_launch(request.folder),
@@ -139,7 +139,7 @@ std::vector<TaskState> ProcessLauncher::states(const std::string& record_text) {
       state.note =
           fmt::format("unless the process on {} that started it has ended", record.conductor.host);
     } else if (cancelled) {
-      state.note = "being ended";
+      state.note = "being stopped";
     }
     state.where = record.where[static_cast<std::size_t>(task) - 1];
     states.push_back(std::move(state));

@@ -70,7 +70,7 @@ TaskState forgotten_task(const LaunchRecord& record, int task, bool cancelled) {
   if (auto end = read_task_end(record, task)) return *end;
   return {.task = task,
           .condition = cancelled ? TaskCondition::kCancelled : TaskCondition::kLost,
-          .note = fmt::format("Slurm does not know job {}_{} any more, and it left no word",
+          .note = fmt::format("Slurm no longer knows job {}_{}, and it left no record of its end",
                               record.job, task)};
 }
 

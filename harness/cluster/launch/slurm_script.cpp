@@ -50,7 +50,7 @@ std::string sbatch_path(const std::string& folder) {
   if (std::ranges::any_of(folder, is_bad)) {
     throw InputError({.file = folder,
                       .found = "a quote, a backslash or a control character in the folder's name",
-                      .expected = "a name that Slurm takes"});
+                      .expected = "a name that Slurm accepts"});
   }
   std::string text;
   for (const char c : folder) text += c == '%' ? "%%" : std::string(1, c);
@@ -115,8 +115,8 @@ std::string worker_script(const LaunchRequest& request, const LaunchOptions& opt
 std::string gather_script(const LaunchRequest& request, const LaunchOptions& options) {
   std::string text =
       "#!/bin/bash\n"
-      "# After the tasks of a campaign: joins what they drove, and writes the page. Written by "
-      "qsmpc.\n"
+      "# Runs after the tasks of a campaign: joins their episodes and writes the page. Written "
+      "by qsmpc.\n"
       "#SBATCH --cpus-per-task=1\n";
   text += sbatch_lines_of(request.folder, options, job_name(request.folder) + "-gather", "gather");
   text += fmt::format("\nexec {}\n", shell_command(with_program(request.gather, options)));

@@ -70,18 +70,18 @@ const qsmpc_controller_table& table_of(const std::string& path) {
   if (library == nullptr) throw std::runtime_error(::dlerror());
   void* const symbol = ::dlsym(library, "qsmpc_controller");
   if (symbol == nullptr) {
-    throw std::runtime_error(path + " exports no function qsmpc_controller");
+    throw std::runtime_error(path + " does not export the function qsmpc_controller");
   }
   const auto function = reinterpret_cast<const qsmpc_controller_table* (*)()>(symbol);
   const qsmpc_controller_table* const table = function();
-  if (table == nullptr) throw std::runtime_error(path + " has no table of a controller");
+  if (table == nullptr) throw std::runtime_error(path + " returns no controller table");
   if (table->abi != QSMPC_CONTROLLER_ABI) {
     throw std::runtime_error(path + " has version " + std::to_string(table->abi) +
-                             " of the controller interface, this program version " +
+                             " of the controller interface; this program has version " +
                              std::to_string(QSMPC_CONTROLLER_ABI));
   }
   if (table->create == nullptr || table->act == nullptr) {
-    throw std::runtime_error(path + " has a table without create or act");
+    throw std::runtime_error(path + " has a controller table without create or act");
   }
   return *table;
 }

@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
   const std::vector<std::string> words(argv, argv + argc);
   const bool is_leashed = ::fcntl(kLeash, F_GETFD) != -1;
   if (words.size() < 4 || (words[2] != "run" && words[2] != "library") || !is_leashed) {
-    std::fputs("qsmpc-host is started by qsmpc, for controllers of its users\n", stderr);
+    std::fputs("qsmpc-host is started by qsmpc to run user-defined controllers\n", stderr);
     return 2;
   }
   return run(words);

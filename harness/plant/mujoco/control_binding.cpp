@@ -89,8 +89,8 @@ void ControlBinding::add(const NamedModel& named, const mjData& data, const Acke
     if (!(offset.x() > 0.0)) {
       throw InputError({.file = named.file,
                         .key = "joint " + wheel.joint,
-                        .found = fmt::format("{} m before the fixed axle", offset.x()),
-                        .expected = "a steered wheel before it"});
+                        .found = fmt::format("{} m ahead of the fixed axle", offset.x()),
+                        .expected = "a steered wheel ahead of it"});
     }
     bound.wheels.push_back({.actuator = element_index(named, mjOBJ_ACTUATOR, wheel.actuator),
                             .forward = offset.x(),

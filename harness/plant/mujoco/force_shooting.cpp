@@ -32,7 +32,7 @@ ForceShooting::ForceShooting(Simulation& simulation, const models::SystemDescrip
     throw InputError({.file = simulation.file(),
                       .key = "disturbance.covariance." + std::to_string(i),
                       .found = "noise in " + system.states[static_cast<std::size_t>(i)].name,
-                      .expected = "0: the model only shows this state"});
+                      .expected = "0: this state can only be read from the model"});
   }
   if (binding.positions().empty()) {
     throw InputError({.file = simulation.file(),

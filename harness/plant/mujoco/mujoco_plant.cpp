@@ -54,7 +54,7 @@ class MujocoPlant final : public Plant {
   MotionSample reset(const Eigen::VectorXd& state) override {
     require_size(state, state_dim_, "state");
     if (!state.allFinite()) {
-      throw std::invalid_argument("MuJoCo plant: reset to a state not finite");
+      throw std::invalid_argument("MuJoCo plant: reset to a non-finite state");
     }
     const MujocoTrap trap;
     fault_.reset();

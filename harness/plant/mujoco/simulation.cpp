@@ -89,7 +89,7 @@ Simulation::Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded)
     throw InputError({.file = file_,
                       .key = "option integrator",
                       .found = "RK4",
-                      .expected = "Euler or implicit, with tyres that the plant works out"});
+                      .expected = "Euler or implicit, because the plant computes the tyre forces"});
   }
   for (const std::string& name : loaded.mapping.rolling) {
     const int joint = scalar_joint(named, name);

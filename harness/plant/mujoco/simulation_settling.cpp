@@ -100,11 +100,12 @@ double Simulation::measured_response(const FeedbackBinding& feedback) {
   feedback_mode_ = Feedback::kOff;
   const double response = 0.5 * (velocities[1] - velocities[0]) / (command * time);
   if (std::abs(response) > kNoResponse) return response;
-  throw SimulatorError({.file = file_,
-                        .found = fmt::format("a velocity that changes by {:.3g} under a control of "
-                                             "{:.3g}",
-                                             velocities[1] - velocities[0], command),
-                        .expected = "actuators of a feedback loop that move what it holds"});
+  throw SimulatorError(
+      {.file = file_,
+       .found = fmt::format("a velocity that changes by {:.3g} under a control of "
+                            "{:.3g}",
+                            velocities[1] - velocities[0], command),
+       .expected = "feedback-loop actuators that change the velocity that the loop holds"});
 }
 
 void Simulation::find_tipping_joints() {

@@ -134,7 +134,7 @@ int spare_bit(const NamedModel& named) {
   throw InputError({.file = named.file,
                     .key = "plant.solid",
                     .found = "geoms whose contype and conaffinity use all bits",
-                    .expected = "one of the bits 8 to 30 that none uses"});
+                    .expected = "at least one of the bits 8 to 30 unused"});
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ void StateBinding::check_rank(const NamedModel& named, mjData& data,
     throw InputError({.file = named.file,
                       .key = "state " + system.states[(*group)[found.dependent]].name,
                       .found = "a quantity that nothing moves, or that another state determines",
-                      .expected = "one that can be set by itself"});
+                      .expected = "one that can be set independently"});
   }
 }
 

@@ -95,12 +95,12 @@ class MomentTable {
     }
     // What is no bound is not called one.
     const [next, plan] = data.holds ? ["P(unsafe) at the next step ≤", "P(unsafe) over the plan ≤"]
-      : ["Certified, next step: no bound", "Certified, plan: no bound"];
+      : ["Certified, next step: not a bound", "Certified, plan: not a bound"];
     this.set(next, formatBound(data.certificates.value[stage]), "next");
     if (data.planned) this.set(plan, formatBound(data.certificates.plan[k]), "plan");
     this.set("Clearance", `${formatNumber(data.clearance[instant])} ${data.clearanceUnit}`, "clearance");
     this.set("Solve time", `${formatNumber(data.solve[k])} ms`, "solve");
-    if (data.solved) this.set("Solver", data.status[k] + (data.fallback[k] ? "; the last plan was kept" : ""), "status");
+    if (data.solved) this.set("Solver", data.status[k] + (data.fallback[k] ? "; the previous plan was kept" : ""), "status");
     this.showCost(k);
   }
 

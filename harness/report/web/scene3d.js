@@ -33,10 +33,10 @@ import {Plan} from "./scene_plan.js";
 import {Vehicle} from "./scene_vehicle.js";
 import {View} from "./scene_view.js";
 
-const kNoGraphics = "This browser has no WebGL, with which the view in three dimensions is drawn. " +
+const kNoGraphics = "This browser has no WebGL, which the view in three dimensions needs. " +
   "Everything else on the page works without it.";
-const kLostGraphics = "The browser has taken the graphics away from this page; reload it to have the " +
-  "view in three dimensions again.";
+const kLostGraphics = "The browser has withdrawn the graphics from this page; reload it to restore the " +
+  "view in three dimensions.";
 const kMostPixels = 2;      // of the screen, per pixel of the page
 const kSunTowards = new Vector3(-2, 2.4, 6).normalize();
 const kShadowReach = 1.6;   // vehicle lengths about the vehicle
@@ -109,8 +109,8 @@ class Panel {
     }
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", "The drive in three dimensions. Arrow keys turn it, plus and " +
-      "minus bring it nearer and farther.");
+    canvas.setAttribute("aria-label", "The drive in three dimensions. Arrow keys rotate it, plus and " +
+      "minus zoom.");
     canvas.addEventListener("webglcontextlost", () => this.say(kLostGraphics));
     this.box.append(canvas);
     this.renderer = new WebGLRenderer({canvas, context});

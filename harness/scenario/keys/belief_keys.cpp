@@ -26,8 +26,8 @@ ScenarioKey deviation_key(const char* name, const std::string& factor_of,
                           double& (*member)(Scenario& scenario)) {
   return {.about = {.name = name,
                     .values = {NumberValue{kDeviationRange}},
-                    .words = "deviation, {range}, of the logarithm of a factor on " + factor_of +
-                             ", drawn once an episode"},
+                    .words = "standard deviation, {range}, of the logarithm of a factor on " +
+                             factor_of + ", drawn once per episode"},
           .member = member};
 }
 
@@ -35,11 +35,11 @@ ScenarioKey sensor_key() {
   return {
       .about = {.name = "sensor",
                 .values = {MatrixValue{}},
-                .words = "*n* × *n* covariance of the Gaussian noise, new in every control "
-                         "period, on what the planner sees of the state",
+                .words = "*n* × *n* covariance of the Gaussian noise on the planner's observation "
+                         "of the state, drawn anew in every control period",
                 .see = "[below](#measurement-noise)",
                 .unit = "unit²",
-                .fallback_words = "zero: it sees the state"},
+                .fallback_words = "zero: it observes the state exactly"},
       .member = [](Scenario& scenario) -> Eigen::MatrixXd& { return scenario.disturbance.sensor; },
       .check =
           [](const ScenarioReading& reading, Section& section) {
@@ -48,20 +48,19 @@ ScenarioKey sensor_key() {
 }
 
 ScenarioKey disturbance_kind_key() {
-  return {
-      .about = {.name = "kind",
-                .values = {NameValue{disturbance_kind_names()}},
-                .words = "how the plant gets that noise: `state`, added to the state at the end of "
-                         "the period, or `force`",
-                .see = "[plants](plants.md#disturbances)"},
-      .member = [](Scenario& scenario) -> std::string& { return scenario.disturbance.kind; },
-      .check =
-          [](const ScenarioReading& reading, Section& section) {
-            const Scenario& scenario = reading.scenario;
-            if (scenario.disturbance.kind == "force" && scenario.plant.kind == "analytic") {
-              section.note("kind", "state, or plant.kind: mujoco");
-            }
-          }};
+  return {.about = {.name = "kind",
+                    .values = {NameValue{disturbance_kind_names()}},
+                    .words = "how the noise of `covariance` acts on the plant: `state`, added to "
+                             "the state at the end of the period, or `force`",
+                    .see = "[plants](plants.md#disturbances)"},
+          .member = [](Scenario& scenario) -> std::string& { return scenario.disturbance.kind; },
+          .check =
+              [](const ScenarioReading& reading, Section& section) {
+                const Scenario& scenario = reading.scenario;
+                if (scenario.disturbance.kind == "force" && scenario.plant.kind == "analytic") {
+                  section.note("kind", "state, or plant.kind: mujoco");
+                }
+              }};
 }
 
 ListValue noise_seed_list() {
@@ -110,10 +109,10 @@ ScenarioKey noise_seeds_key() {
   return {
       .about = {.name = "seeds",
                 .values = {noise_seed_list()},
-                .words = "seeds of the noise and the measurement noise in place of `seed`: a "
-                         "list of `{from: PERIOD, seed: SEED}`, each from its control period "
-                         "on, ascending; what a campaign of rare outcomes writes, so that a "
-                         "drive that it found is driven again",
+                .words = "seeds for the noise and the measurement noise that replace `seed`: an "
+                         "ascending list of `{from: PERIOD, seed: SEED}`, each valid from its "
+                         "control period on; written by campaigns of rare outcomes so that a drive "
+                         "that they found can be repeated",
                 .see = "[rare outcomes](rare.md)",
                 .fallback_words = "none"},
       .read = read_noise_seeds,
@@ -179,7 +178,7 @@ ScenarioKey disturbance_key() {
            deviation_key("mass", "the plant's masses and inertias",
                          [](Scenario& scenario) -> double& { return scenario.disturbance.mass; }),
            deviation_key(
-               "wheelbase", "the distances of the plant's axles",
+               "wheelbase", "the plant's axle distances",
                [](Scenario& scenario) -> double& { return scenario.disturbance.wheelbase; }),
            noise_seeds_key()},
       .after = ReadAfter::kSystem,
@@ -189,30 +188,28 @@ ScenarioKey disturbance_key() {
 ScenarioKey estimator_key() {
   return {
       .about = {.name = "estimator"},
-      .keys = {{.about = {.name = "kind",
-                          .values = {NameValue{estimator_names()}},
-                          .words = "what makes beliefs of observations, a name from `qsmpc list "
-                                   "estimators`",
-                          .fallback_words = "`exact`, with `disturbance.sensor` "
-                                            "`last_measurement`"},
-                .member = [](Scenario& scenario) -> std::string& {
-                  return scenario.estimator.kind;
+      .keys =
+          {{.about = {.name = "kind",
+                      .values = {NameValue{estimator_names()}},
+                      .words = "how beliefs are formed from observations, a name from `qsmpc list "
+                               "estimators`",
+                      .fallback_words = "`exact`; with `disturbance.sensor`, `last_measurement`"},
+            .member = [](Scenario& scenario) -> std::string& { return scenario.estimator.kind; },
+            .read =
+                [](ScenarioReading& reading, Section& section, const KeyDescription& about) {
+                  reading.scenario.estimator.kind =
+                      section.name(about.name, default_estimator(reading.scenario),
+                                   value_of<NameValue>(about).known);
                 },
-                .read =
-                    [](ScenarioReading& reading, Section& section, const KeyDescription& about) {
-                      reading.scenario.estimator.kind =
-                          section.name(about.name, default_estimator(reading.scenario),
-                                       value_of<NameValue>(about).known);
-                    },
-                .check =
-                    [](const ScenarioReading& reading, Section& section) {
-                      const Scenario& scenario = reading.scenario;
-                      if (has_sensor_noise(scenario) &&
-                          controller::estimator_entry(scenario.estimator.kind).needs_exact_sensor) {
-                        section.note("kind", default_estimator(scenario) +
-                                                 ", since disturbance.sensor is not zero");
-                      }
-                    }}},
+            .check =
+                [](const ScenarioReading& reading, Section& section) {
+                  const Scenario& scenario = reading.scenario;
+                  if (has_sensor_noise(scenario) &&
+                      controller::estimator_entry(scenario.estimator.kind).needs_exact_sensor) {
+                    section.note("kind", default_estimator(scenario) +
+                                             ", because disturbance.sensor is not zero");
+                  }
+                }}},
       .layout = SectionLayout::kFlow,
       .after = ReadAfter::kSystem,
       .table = "measurement"};

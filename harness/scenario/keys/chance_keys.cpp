@@ -105,7 +105,7 @@ void check_policy(const ScenarioReading& reading, Section& section) {
   if (samples_paths(reading.scenario)) return;
   section.note("policy",
                "closed_loop or open_loop, or controller.kind: scenario, cvar or drcc, whose paths "
-               "have a noise that inputs can answer to");
+               "contain noise that inputs can respond to");
 }
 
 ScenarioKey chance_key() {
@@ -115,39 +115,39 @@ ScenarioKey chance_key() {
       .keys =
           {{.about = {.name = "risk",
                       .values = {NumberValue{kRiskRange}},
-                      .words = "probability with which a stage of a plan may be unsafe, as the "
-                               "method believes; with `scenario` any stage of it"},
+                      .words = "permitted probability, as the method estimates it, that a stage of "
+                               "a plan is unsafe; with `scenario`, that any stage is"},
             .member = [](Scenario& scenario) -> double& { return chance_of(scenario).risk; },
             .check = check_chance_risk},
            {.about = {.name = "paths",
                       .values = {kPathsRange},
-                      .words = "paths that are sampled for a plan, {range}; 0: with `scenario` as "
-                               "many as the sample bound asks for, with `cvar` and `drcc` 200"},
+                      .words = "number of paths sampled for a plan, {range}; 0: as many as the "
+                               "sample bound requires with `scenario`, 200 with `cvar` and `drcc`"},
             .member = [](Scenario& scenario) -> int& { return chance_of(scenario).paths; },
             .check = check_paths},
            {.about = {.name = "confidence",
                       .values = {NumberValue{kConfidenceRange}},
-                      .words = "of the sample bound of `scenario`: how sure it is to be"},
+                      .words = "for `scenario`: confidence of the sample bound"},
             .member = [](Scenario& scenario) -> double& { return chance_of(scenario).confidence; },
             .check = check_confidence},
            {.about = {.name = "radius",
                       .values = {NumberValue{kRadiusRange}},
-                      .words = "of `drcc`: of the ball of laws about the sampled one, in the "
-                               "1-Wasserstein distance",
+                      .words = "for `drcc`: radius of the ball of laws about the sampled one, in "
+                               "the 1-Wasserstein distance",
                       .unit = "m"},
             .member = [](Scenario& scenario) -> double& { return chance_of(scenario).radius; },
             .check = check_radius},
            {.about = {.name = "smoothing",
                       .values = {NumberValue{kRoundingRange}},
-                      .words = "of `cvar` and `drcc`: over how much of the clearance the beginning "
-                               "of the tail is rounded off",
+                      .words = "for `cvar` and `drcc`: half-width, in clearance, over which the "
+                               "beginning of the tail is smoothed",
                       .unit = "m"},
             .member = [](Scenario& scenario) -> double& { return chance_of(scenario).smoothing; },
             .check = check_smoothing},
            {.about = {.name = "memory",
                       .values = {kMemoryRange},
-                      .words = "with `controller.policy: disturbance_feedback`: how many of the "
-                               "last noises an input answers to"},
+                      .words = "with `controller.policy: disturbance_feedback`: number of latest "
+                               "noise values that an input responds to"},
             .member = [](Scenario& scenario) -> int& {
               return scenario.controller.disturbance_memory;
             },
@@ -183,7 +183,7 @@ ScenarioKey shield_key() {
                     }},
                {.about = {.name = "stages",
                           .values = {WholeValue{0, kMostStages}},
-                          .words = "how many stages are looked ahead; 0: the whole horizon"},
+                          .words = "number of stages looked ahead, {range}; 0: the whole horizon"},
                 .member = [](Scenario& scenario) -> int& {
                   return scenario.controller.shield.stages;
                 },

@@ -137,14 +137,14 @@ void check_penalty_shape(const ScenarioReading& reading, Section& section) {
   const auto shape = std::find_if(obstacles.begin(), obstacles.end(),
                                   [](const auto& obstacle) { return obstacle.box() == nullptr; });
   if (shape == obstacles.end()) return;
-  section.note("shape", fmt::format("smooth, as safe_set.obstacles.{} is no box of states",
+  section.note("shape", fmt::format("smooth, because safe_set.obstacles.{} is not a box of states",
                                     shape - obstacles.begin()));
 }
 
 std::vector<ScenarioKey> kind_keys() {
   return {{.about = {.name = "kind",
                      .values = {NameValue{controller_names()}},
-                     .words = "what drives, a name from `qsmpc list controllers`",
+                     .words = "the controller, a name from `qsmpc list controllers`",
                      .see = "[below](#controllers)"},
            .member = [](Scenario& scenario) -> std::string& { return scenario.controller.kind; },
            .check = check_kind},
@@ -153,7 +153,7 @@ std::vector<ScenarioKey> kind_keys() {
                [](const Scenario& scenario) { return driving_kind(scenario.controller) == "lqr"; },
            .keys = {{.about = {.name = "about",
                                .values = {NameValue{lqr_about_names()}},
-                               .words = "about what `lqr` linearises: {names}"},
+                               .words = "what `lqr` linearises about: {names}"},
                      .member = [](Scenario& scenario) -> std::string& {
                        return scenario.controller.lqr_about;
                      },
@@ -165,7 +165,7 @@ std::vector<ScenarioKey> plan_keys() {
   return {
       {.about = {.name = "horizon",
                  .values = {kHorizonRange},
-                 .words = "steps that are planned ahead"},
+                 .words = "number of steps planned ahead"},
        .member = [](Scenario& scenario) -> int& { return scenario.controller.horizon; }},
       {.about = {.name = "policy", .values = {NameValue{policy_names()}}, .words = "{names}"},
        .member = [](Scenario& scenario) -> std::string& { return scenario.controller.policy; },
@@ -182,23 +182,23 @@ std::vector<ScenarioKey> plan_keys() {
                  .values = {MatrixValue{.rows = Dimension::kInputs, .cols = Dimension::kStates}},
                  .words = "*m* × *n* matrix of the closed-loop policy",
                  .see = "[below](#gains)",
-                 .unit = "of the input, by unit of the state",
+                 .unit = "of the input per unit of the state",
                  .fallback_words = "from LQR"},
        .read = read_gain,
        .write = gain_text},
       {.about = {.name = "feedback_effort",
                  .values = {NumberValue{kPositive}},
-                 .words = "how much more the input weighs in that LQR than in the cost: gains are "
-                          "gentler for more",
+                 .words = "factor on the weight of the input in that LQR, relative to the cost: "
+                          "larger values give gentler gains",
                  .see = "[below](#gains)",
-                 .fallback_words = "1; with limits of the risk, chosen as the drive goes"},
+                 .fallback_words = "1; with risk limits, chosen during the drive"},
        .member = [](Scenario& scenario) -> double& { return scenario.controller.feedback_effort; },
        .is_written =
            [](const Scenario& scenario) { return scenario.controller.feedback_effort > 0.0; }},
       {.about = {.name = "optimise_gain",
                  .values = {FlagValue{}},
-                 .words = "whether a matrix that is added to the gains is optimised along with the "
-                          "inputs",
+                 .words =
+                     "whether a matrix added to the gains is optimised together with the inputs",
                  .see = "[below](#gains)"},
        .member = [](Scenario& scenario) -> bool& { return scenario.controller.optimise_gain; },
        .check = check_optimise_gain},
@@ -248,45 +248,44 @@ ScenarioKey cost_key() {
 ScenarioKey penalty_key() {
   return {
       .about = {.name = "penalty"},
-      .keys = {{.about = {.name = "shape",
-                          .values = {NameValue{penalty_shape_names()}},
-                          .words = "`smooth`, or `thesis`: Algorithm 2 of the reference thesis, "
-                                   "which knows boxes of states alone"},
-                .member = [](Scenario& scenario) -> std::string& {
-                  return scenario.controller.penalty.shape;
-                },
-                .check = check_penalty_shape},
-               {.about = {.name = "box",
-                          .values = {NumberValue{kNotNegative}},
-                          .words = "weight of leaving the bounds, {range}; not used by `slsqp`",
-                          .see = "[below](#solvers)",
-                          .fallback_words = "450; 0 where limits of the risk are kept"},
-                .member = [](Scenario& scenario) -> double& {
-                  return scenario.controller.penalty.box;
-                },
-                .read =
-                    [](ScenarioReading& reading, Section& section, const KeyDescription& about) {
-                      read_weight(reading, section, about, reading.scenario.controller.penalty.box);
-                    }},
-               {.about = {.name = "obstacle",
-                          .values = {NumberValue{kNotNegative}},
-                          .words = "weight of entering an obstacle",
-                          .fallback_words = "400; 0 where limits of the risk are kept"},
-                .member = [](Scenario& scenario) -> double& {
-                  return scenario.controller.penalty.obstacle;
-                },
-                .read =
-                    [](ScenarioReading& reading, Section& section, const KeyDescription& about) {
-                      read_weight(reading, section, about,
-                                  reading.scenario.controller.penalty.obstacle);
-                    }},
-               {.about = {.name = "length",
-                          .values = {NumberValue{kPositive}},
-                          .words = "how far outside of the unsafe set the smooth shape begins",
-                          .unit = "m"},
-                .member = [](Scenario& scenario) -> double& {
-                  return scenario.controller.penalty.length;
-                }}},
+      .keys =
+          {{.about = {.name = "shape",
+                      .values = {NameValue{penalty_shape_names()}},
+                      .words = "`smooth`, or `thesis`: Algorithm 2 of the reference thesis, which "
+                               "supports only boxes of states"},
+            .member = [](Scenario& scenario) -> std::string& {
+              return scenario.controller.penalty.shape;
+            },
+            .check = check_penalty_shape},
+           {.about = {.name = "box",
+                      .values = {NumberValue{kNotNegative}},
+                      .words = "weight of leaving the bounds, {range}; not used by `slsqp`",
+                      .see = "[below](#solvers)",
+                      .fallback_words = "450; 0 where risk limits are kept"},
+            .member = [](Scenario& scenario) -> double& { return scenario.controller.penalty.box; },
+            .read =
+                [](ScenarioReading& reading, Section& section, const KeyDescription& about) {
+                  read_weight(reading, section, about, reading.scenario.controller.penalty.box);
+                }},
+           {.about = {.name = "obstacle",
+                      .values = {NumberValue{kNotNegative}},
+                      .words = "weight of entering an obstacle",
+                      .fallback_words = "400; 0 where risk limits are kept"},
+            .member = [](Scenario& scenario) -> double& {
+              return scenario.controller.penalty.obstacle;
+            },
+            .read =
+                [](ScenarioReading& reading, Section& section, const KeyDescription& about) {
+                  read_weight(reading, section, about,
+                              reading.scenario.controller.penalty.obstacle);
+                }},
+           {.about = {.name = "length",
+                      .values = {NumberValue{kPositive}},
+                      .words = "distance outside the unsafe set at which the smooth shape begins",
+                      .unit = "m"},
+            .member = [](Scenario& scenario) -> double& {
+              return scenario.controller.penalty.length;
+            }}},
       .layout = SectionLayout::kFlow};
 }
 
@@ -310,8 +309,8 @@ std::vector<ScenarioKey> effort_keys() {
   return {
       {.about = {.name = "deadline",
                  .values = {NumberValue{kDeadlineRange}},
-                 .words = "time after which a plan is cut short, and a controller that is no part "
-                          "of the program has failed",
+                 .words = "time after which planning is cut short and a controller outside the "
+                          "program counts as failed",
                  .see = "[below](#deadline-and-threads)",
                  .unit = "s",
                  .fallback_words = "none; 10 for `external`, `library` and `object`"},
@@ -321,12 +320,12 @@ std::vector<ScenarioKey> effort_keys() {
       {.about = {.name = "max_iterations",
                  .values = {kIterationsRange},
                  .words =
-                     "evaluations of cost and gradient in one plan, {range}; what a start from "
-                     "nothing takes to find the way round obstacles is not counted"},
+                     "maximum number of evaluations of cost and gradient in one plan, {range}; "
+                     "those with which a cold start finds the way round obstacles are not counted"},
        .member = [](Scenario& scenario) -> int& { return scenario.controller.max_iterations; }},
       {.about = {.name = "threads",
                  .values = {kThreadsRange},
-                 .words = "threads that loops over many particles are divided among",
+                 .words = "number of threads that share loops over many particles",
                  .see = "[below](#deadline-and-threads)"},
        .member = [](Scenario& scenario) -> int& { return scenario.controller.threads; }}};
 }

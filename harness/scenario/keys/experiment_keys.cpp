@@ -25,7 +25,7 @@ std::vector<ScenarioKey> experiment_keys() {
            .table = "experiment"},
           {.about = {.name = "seed",
                      .values = {WholeValue{}},
-                     .words = "whole number, {range}, from which all random numbers come"},
+                     .words = "whole number, {range}, that determines all random numbers"},
            .member = [](Scenario& scenario) -> std::uint64_t& { return scenario.seed; },
            .table = "experiment"}};
 }
@@ -48,9 +48,9 @@ ScenarioKey limit_key() {
                 .member = [](Scenario& scenario) -> int& { return scenario.step_limit; }},
                {.about = {.name = "stop_when_unsafe",
                           .values = {FlagValue{}},
-                          .words = "whether it ends when the true state is unsafe; else it goes "
-                                   "on, and its outcome is "
-                                   "`collision` or `left_bounds` all the same"},
+                          .words =
+                              "whether it ends when the true state is unsafe; otherwise it "
+                              "continues, and its outcome is still `collision` or `left_bounds`"},
                 .member = [](Scenario& scenario) -> bool& { return scenario.stop_when_unsafe; }}},
       .layout = SectionLayout::kFlow,
       .table = "experiment"};

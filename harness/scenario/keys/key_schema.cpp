@@ -173,7 +173,7 @@ nlohmann::ordered_json scenario_schema() {
   std::vector<KeyDescription> keys;
   for (const ScenarioKey& key : scenario_keys()) keys.push_back(describe(key));
   Json schema = json_schema({.title = "qsmpc scenario",
-                             .description = "One experiment: a system, the plant that stands for "
+                             .description = "One experiment: a system, the plant that represents "
                                             "it, noise, a map, a target and a controller."},
                             keys);
   schema["allOf"] = conditions_of_systems(keys);

@@ -16,7 +16,7 @@ std::optional<Eigen::VectorXd> numbers_of(const YamlNode& row, std::string& foun
     const YamlNode& item = row.items[static_cast<std::size_t>(k)];
     const std::optional<double> number = parse_number(item);
     if (!number || !std::isfinite(*number)) {
-      found = fmt::format("{} as number {}", describe(item), k + 1);
+      found = fmt::format("{} at position {}", describe(item), k + 1);
       return std::nullopt;
     }
     numbers[k] = *number;
@@ -51,7 +51,7 @@ std::optional<std::vector<Eigen::VectorXd>> read_rows(Section& section, const st
     }
     if (form.alike && i > 0 && numbers->size() != rows.front().size()) {
       section.note_item(key, i,
-                        fmt::format("{} numbers, as in the rows before", rows.front().size()));
+                        fmt::format("{} numbers, as in the previous rows", rows.front().size()));
       return std::nullopt;
     }
     rows.push_back(*numbers);

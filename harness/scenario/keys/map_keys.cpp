@@ -35,7 +35,7 @@ void read_angles(ScenarioReading& reading, Section& section, const KeyDescriptio
     const int index = system.state_index(name);
     if (std::ranges::find(known, name) == known.end()) {
       section.note(about.name,
-                   known.empty() ? "no names, since no state of the system is an angle"
+                   known.empty() ? "no names, because no state of the system is an angle"
                                  : "states that are angles, " + expected_names(name, known),
                    name);
     } else if (std::ranges::find(angles, index) != angles.end()) {
@@ -66,7 +66,7 @@ void read_target_state(ScenarioReading& reading, Section& section, const KeyDesc
     section.require(about.name, fmt::format("{} numbers, [{}]", size,
                                             fmt::join(coordinate_names(states), ", ")));
   } else if (section.has(about.name)) {
-    section.note(about.name, fmt::format("nothing, as there is target.{}", other));
+    section.note(about.name, fmt::format("nothing, because there is target.{}", other));
   }
   if (const auto given = section.vector(about.name, size)) state = *given;
 }
@@ -81,8 +81,8 @@ ScenarioKey angles_key() {
   return {
       .about = {.name = "angles",
                 .values = {list_of_values(SystemNameValue{NameFamily::kAngles}, {.once = true})},
-                .words = "list of states that are angles whose target is meant modulo 2π, e.g. "
-                         "`[heading]`: headings a turn apart then cost the same",
+                .words = "list of angle states whose target is taken modulo 2π, e.g. `[heading]`: "
+                         "headings a full turn apart then cost the same",
                 .see = "[below](#angles)",
                 .fallback = "[]",
                 .fallback_words = "`[]`: as many turns as `target.state` says"},

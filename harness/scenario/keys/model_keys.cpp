@@ -36,12 +36,12 @@ void read_parameters(ScenarioReading& reading, Section& section, const models::S
     if (value == fallback || try_dynamics(alone, time_step, refusal) != nullptr) {
       model.parameters[name] = value;
     } else {
-      section.note(name, "what the system accepts: " + refusal);
+      section.note(name, "a value that the system accepts: " + refusal);
     }
   }
   reading.dynamics = try_dynamics(model, time_step, refusal);
   if (reading.dynamics == nullptr) {
-    section.note_here("what the system accepts: " + refusal, "parameters that do not go together");
+    section.note_here("values that the system accepts: " + refusal, "incompatible parameters");
     model.parameters = entry.defaults;
     reading.dynamics = try_dynamics(model, time_step, refusal);
   }
@@ -74,8 +74,8 @@ void check_derivatives(const ScenarioReading& reading, Section& root) {
   if (!model.own || model.own->differentiable || !reading.scenario.risk.any()) return;
   root.note("risk",
             "no limits: the system " + model.system +
-                " gives steps without derivatives, so that no certificate is given",
-            "limits of the risk");
+                " provides no derivatives, so no certificate is given",
+            "risk limits");
 }
 
 std::optional<std::string> model_text(const Scenario& scenario,
@@ -100,8 +100,8 @@ ScenarioKey model_key() {
                   .table = "plant"};
   key.keys = {{.about = {.name = "system",
                          .values = {TextValue{.longest = kLongestName, .what = "a name"}},
-                         .words = "a name from `qsmpc list systems`; with `library` one of its "
-                                  "systems; with `equations` what yours is called",
+                         .words = "a name from `qsmpc list systems`; with `library`, one of its "
+                                  "systems; with `equations`, the name of yours",
                          .fallback_words = "required without `library` and `equations`"},
                .member = [](Scenario& scenario) -> std::string& { return scenario.model.system; }},
               {.about = {.name = "PARAMETER",

@@ -30,13 +30,14 @@ struct PairKey {
   Eigen::Vector2d ObstacleMotion::*member;
 };
 constexpr PairKey kPairs[] = {
-    {"start_deviation", "standard deviation of where it is at time 0", "m",
+    {"start_deviation", "standard deviation of its initial position", "m",
      &ObstacleMotion::start_deviation},
-    {"speed_deviation", "standard deviation of its velocity from that of the way", "m/s",
+    {"speed_deviation", "standard deviation of its velocity from the way's", "m/s",
      &ObstacleMotion::speed_deviation},
-    {"returns_in", "time in which it makes good 63 % of a deviation from the way; 0: never", "s",
+    {"returns_in", "time in which it corrects 63 % of a deviation from the way; 0: never", "s",
      &ObstacleMotion::returns_in},
-    {"covariance_rate", "of a random walk about the way", "m²/s", &ObstacleMotion::covariance_rate},
+    {"covariance_rate", "covariance rate of a random walk about the way", "m²/s",
+     &ObstacleMotion::covariance_rate},
 };
 
 Eigen::Vector2d read_pair(Section& motion, const char* key) {
@@ -89,14 +90,14 @@ IntendedWay read_way(Section& section, const Eigen::Vector2d& centre) {
   for (const char* key : kWayKeys) (void)section.tree(key);
   IntendedWay way{.points = {{.place = centre}}};
   if (section.has("route") && section.has("path")) {
-    section.note("route", "no route beside a path: one of them says where it goes");
+    section.note("route", "no route beside a path: only one of them can say where it goes");
   } else if (section.has("route")) {
     read_route(section, centre, way);
   } else if (section.has("path")) {
     read_path(section, way);
   }
   if (section.has("speed") && !section.has("route")) {
-    section.note("speed", "none without a route; a velocity is what it goes on with");
+    section.note("speed", "none without a route; velocity sets how it continues");
   }
   if (!section.has("velocity")) return way;
   if (const auto velocity = section.vector("velocity", 2)) way.onward = *velocity;
@@ -107,7 +108,7 @@ std::vector<IntendedWay> read_ways(Section& motion, const Eigen::Vector2d& centr
   (void)motion.tree("ways");
   if (!motion.has("ways")) return {read_way(motion, centre)};
   for (const char* key : kWayKeys) {
-    if (motion.has(key)) motion.note(key, "none beside ways, which each have their own");
+    if (motion.has(key)) motion.note(key, "none beside ways, each of which has its own");
   }
   const std::size_t count = motion.list_size("ways");
   if (count < 1 || count > kMostWays) {
@@ -140,17 +141,18 @@ KeyDescription rows_key(const char* name, std::size_t columns, const char* words
 std::vector<KeyDescription> way_keys() {
   return {{.name = "velocity",
            .values = {VectorValue{.size = Dimension::kAny, .length = 2, .range = kVelocities}},
-           .words = "what it moves with, after the last place where there are any",
+           .words = "velocity of a straight motion; after a path or a route, the velocity with "
+                    "which it continues",
            .unit = "m/s",
            .fallback = "[0, 0]"},
           rows_key("path", 3,
-                   "`[time, x, y]`: where its centre is at times, straight on between "
-                   "them; at time 0 it is where its shape is written",
+                   "`[time, x, y]`: positions of its centre with their times, with straight lines "
+                   "between them; at time 0 it is where its shape is defined",
                    "s, m"),
-          rows_key("route", 2, "`[x, y]`: places that its centre passes at the `speed`", "m"),
+          rows_key("route", 2, "`[x, y]`: positions that its centre passes at the `speed`", "m"),
           {.name = "speed",
            .values = {NumberValue{kSpeeds}},
-           .words = "along the `route`",
+           .words = "speed along the `route`",
            .unit = "m/s"}};
 }
 
@@ -185,11 +187,11 @@ KeyDescription motion_key() {
   one.insert(one.begin(),
              {.name = "probability",
               .values = {NumberValue{{.least = 0.0, .most = 1.0, .above_least = true}}},
-              .words = "that it goes this way; all of them add up to 1",
+              .words = "probability that it takes this way; all of them add up to 1",
               .required = true});
   keys.push_back({.name = "ways",
                   .values = {list_of_values(MappingValue{one}, {.least = 1, .most = kMostWays})},
-                  .words = "instead of one way, several of which it intends one"});
+                  .words = "instead of one way, several ways, of which it takes one"});
   for (const PairKey& pair : kPairs) {
     keys.push_back(
         {.name = pair.name,
@@ -201,27 +203,29 @@ KeyDescription motion_key() {
   }
   keys.push_back({.name = "memory",
                   .values = {NumberValue{kMemories}},
-                  .words = "for how long its velocity remembers what it was",
+                  .words = "correlation time of its velocity's deviation",
                   .unit = "s",
                   .fallback = "1"});
-  keys.push_back({.name = "seen_deviation",
-                  .values = {NumberValue{kDeviations}},
-                  .words = "standard deviation of each coordinate of its place as it is seen",
-                  .unit = "m",
-                  .fallback = "0"});
+  keys.push_back(
+      {.name = "seen_deviation",
+       .values = {NumberValue{kDeviations}},
+       .words = "standard deviation of each coordinate of its position as the planner observes it",
+       .unit = "m",
+       .fallback = "0"});
   keys.push_back({.name = "turns",
                   .values = {FlagValue{}},
-                  .words = "whether it turns about its centre with its way",
+                  .words = "whether it turns about its centre with the direction of its way",
                   .fallback = "false"});
-  keys.push_back({.name = "yields",
-                  .values = {NumberValue{kDeviations}},
-                  .words = "it waits while the vehicle is nearer than this; certificates know "
-                           "nothing of it",
-                  .unit = "m",
-                  .fallback = "0"});
+  keys.push_back(
+      {.name = "yields",
+       .values = {NumberValue{kDeviations}},
+       .words =
+           "it waits while the vehicle is closer than this; certificates do not account for it",
+       .unit = "m",
+       .fallback = "0"});
   return {.name = kMotionKey,
           .values = {MappingValue{std::move(keys)}},
-          .words = "how a shape moves, beside it",
+          .words = "how a shape moves; only beside a shape",
           .see = "[below](#obstacles-that-move)"};
 }
 
@@ -229,7 +233,7 @@ std::optional<ObstacleMotion> read_motion(Section& obstacle, const Eigen::Vector
   Section section = obstacle.section(kMotionKey);
   if (!section.present()) return std::nullopt;
   if (section.keys().empty()) {
-    obstacle.note(kMotionKey, "what moves it, e.g. a velocity or a route; else no motion",
+    obstacle.note(kMotionKey, "a motion, e.g. with a velocity or a route, or no such key",
                   "an empty mapping");
     return std::nullopt;
   }

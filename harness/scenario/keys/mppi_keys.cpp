@@ -76,8 +76,8 @@ std::vector<ScenarioKey> sample_keys() {
   return {
       {.about = {.name = "samples",
                  .values = {kSamplesRange},
-                 .words = "of `mppi` and `risk_mppi`, as all keys of this section: input sequences "
-                          "that are drawn and rolled out",
+                 .words = "for `mppi` and `risk_mppi`, like all keys of this section: number of "
+                          "input sequences drawn and rolled out",
                  .see = "[below](#sampling)"},
        .member = member_of<&MppiSettings::samples>,
        .check =
@@ -86,7 +86,7 @@ std::vector<ScenarioKey> sample_keys() {
            }},
       {.about = {.name = "iterations",
                  .values = {kUpdatesRange},
-                 .words = "updates of the inputs in a period, each with new samples"},
+                 .words = "updates of the inputs per period, each with new samples"},
        .member = member_of<&MppiSettings::iterations>,
        .check =
            [](const ScenarioReading& reading, Section& section) {
@@ -96,7 +96,7 @@ std::vector<ScenarioKey> sample_keys() {
                  .values = {NumberValue{kPositive}},
                  .words = "λ of the weights exp(−cost/λ)",
                  .unit = "of the cost",
-                 .fallback_words = "chosen in every iteration, as `effective_share` says"},
+                 .fallback_words = "chosen in every iteration to give `effective_share`"},
        .member = member_of<&MppiSettings::temperature>,
        .check =
            [](const ScenarioReading& reading, Section& section) {
@@ -133,7 +133,8 @@ std::vector<ScenarioKey> perturbation_keys() {
            }},
       {.about = {.name = "correlation",
                  .values = {NumberValue{kBelowOneRange}},
-                 .words = "of a perturbation with that of the period before; 0: white"},
+                 .words = "correlation of a perturbation with that of the previous period, "
+                          "{range}; 0: white"},
        .member = member_of<&MppiSettings::correlation>,
        .check =
            [](const ScenarioReading& reading, Section& section) {
@@ -141,7 +142,7 @@ std::vector<ScenarioKey> perturbation_keys() {
            }},
       {.about = {.name = "control_term",
                  .values = {NumberValue{kUnitRange}},
-                 .words = "share of the control term λ uᵀΣ⁻¹ε that is charged"},
+                 .words = "share of the control term λ uᵀΣ⁻¹ε that is added to the cost"},
        .member = member_of<&MppiSettings::control_term>,
        .check =
            [](const ScenarioReading& reading, Section& section) {
@@ -149,8 +150,8 @@ std::vector<ScenarioKey> perturbation_keys() {
            }},
       {.about = {.name = "smoothing",
                  .values = {kSmoothingRange},
-                 .words = "periods to either side that the Savitzky-Golay filter of the inputs "
-                          "takes in; 0: no filter"},
+                 .words = "number of periods on either side that the Savitzky-Golay filter of the "
+                          "inputs includes, {range}; 0: no filter"},
        .member = member_of<&MppiSettings::smoothing>,
        .check =
            [](const ScenarioReading& reading, Section& section) {
@@ -176,14 +177,14 @@ std::vector<ScenarioKey> unsafe_cost_keys() {
       optional_key<&MppiSettings::proximity_cost>(
           {.name = "proximity_cost",
            .values = {NumberValue{kNotNegative}},
-           .words = "weight of being nearer to it than `margin`",
-           .fallback_words = "2.5 × `controller.penalty.obstacle`; of `risk_mppi` 400"}),
+           .words = "weight of being closer to it than `margin`",
+           .fallback_words = "2.5 × `controller.penalty.obstacle`; 400 for `risk_mppi`"}),
       optional_key<&MppiSettings::margin>(
           {.name = "margin",
            .values = {NumberValue{kPositive}},
            .words = "clearance at which that cost begins",
            .unit = "m",
-           .fallback_words = "`controller.penalty.length`; of `risk_mppi` 0.5"}),
+           .fallback_words = "`controller.penalty.length`; 0.5 for `risk_mppi`"}),
   };
 }
 
@@ -191,8 +192,8 @@ std::vector<ScenarioKey> sampled_noise_keys() {
   return {
       {.about = {.name = "noise",
                  .values = {FlagValue{}},
-                 .words = "of `mppi` alone: whether every rollout starts at a draw of the belief "
-                          "and has process noise of its own"},
+                 .words = "for `mppi` only: whether every rollout starts at a sample of the belief "
+                          "and has its own process noise"},
        .member = member_of<&MppiSettings::noise>,
        .check =
            [](const ScenarioReading& reading, Section& section) {
@@ -202,8 +203,8 @@ std::vector<ScenarioKey> sampled_noise_keys() {
            [](const Scenario& scenario) { return driving_kind(scenario.controller) == kMppi; }},
       {.about = {.name = "noise_paths",
                  .values = {kNoisePathsRange},
-                 .words = "of `risk_mppi` alone: realisations of belief and noise that every "
-                          "sequence is rolled out in"},
+                 .words = "for `risk_mppi` only: number of realisations of belief and noise in "
+                          "which every sequence is rolled out"},
        .member = member_of<&MppiSettings::noise_paths>,
        .check =
            [](const ScenarioReading& reading, Section& section) {
@@ -213,7 +214,7 @@ std::vector<ScenarioKey> sampled_noise_keys() {
            [](const Scenario& scenario) { return driving_kind(scenario.controller) == kRiskMppi; }},
       {.about = {.name = "cvar",
                  .values = {NumberValue{kBelowOneRange}},
-                 .words = "of `risk_mppi` alone: α of the conditional value at risk, the mean of "
+                 .words = "for `risk_mppi` only: α of the conditional value at risk, the mean of "
                           "the worst 1 − α of the paths"},
        .member = member_of<&MppiSettings::cvar>,
        .check =

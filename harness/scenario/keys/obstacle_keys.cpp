@@ -34,10 +34,10 @@ void read_listed(ScenarioReading& reading, Section& section, const KeyDescriptio
 
 void read_from_file(ScenarioReading& reading, Section& section, const KeyDescription& about) {
   if (!section.has(about.name)) return (void)section.tree(about.name);
-  const std::optional<std::string> path = named_file(
-      section, about.name, reading.lookup.folder,
-      "the path of a file with obstacles from the scenario's folder, or with --set from the "
-      "working one");
+  const std::optional<std::string> path =
+      named_file(section, about.name, reading.lookup.folder,
+                 "the path of a file with obstacles, relative to the scenario's folder or, with "
+                 "--set, to the working folder");
   if (path) append_obstacles(reading, read_obstacle_file(*path, reading_of_more(reading)));
 }
 
@@ -46,9 +46,9 @@ void read_from_model(ScenarioReading& reading, Section& section, const KeyDescri
   if (!choice.present()) return;
   const std::string& mjcf = reading.scenario.plant.mjcf;
   if (!has_plane(reading.system())) {
-    section.note(about.name, "none, as the system has no position in the plane");
+    section.note(about.name, "none, because the system has no position in the plane");
   } else if (mjcf.empty()) {
-    section.note(about.name, "none, as there is no plant.mjcf");
+    section.note(about.name, "none, because there is no plant.mjcf");
   } else {
     append_obstacles(reading, read_mjcf_obstacles(choice, mjcf, reading_of_more(reading)));
   }
@@ -85,9 +85,9 @@ std::vector<ScenarioKey> obstacle_keys() {
   return {{.about = {.name = "obstacles",
                      .values = {list_of_values(obstacle_value(), {.most = kMostObstacles})},
                      .words = fmt::format(
-                         "up to {} obstacles, each a box, a mapping of at least one state to "
-                         "`[lower, upper]`, where a state that is not named is not restricted; or "
-                         "a `disc`, `ellipse`, `box`, `polygon` or `half_plane` of the plane of "
+                         "up to {} obstacles, each either a box, a mapping of at least one state "
+                         "to `[lower, upper]` in which states not named are unrestricted, or a "
+                         "`disc`, `ellipse`, `box`, `polygon` or `half_plane` in the plane of "
                          "position, which may have a `motion`",
                          kMostObstacles),
                      .see = "[below](#shapes)",
@@ -99,16 +99,16 @@ std::vector<ScenarioKey> obstacle_keys() {
           {.about = {.name = "obstacles_from_file",
                      .values = {TextValue{.what = "a path"}},
                      .words = "path of a YAML or JSON file with more of them, absolute or relative "
-                              "to the scenario's folder (with `--set` else to the working folder): "
-                              "a list as above, or GeoJSON in m",
+                              "to the scenario's folder (with `--set`, otherwise to the working "
+                              "folder): a list as above, or GeoJSON in m",
                      .see = "[below](#obstacles-from-a-file)",
                      .fallback_words = "none"},
            .read = read_from_file,
            .write = not_written},
           {.about = {.name = "obstacles_from_mjcf",
                      .values = {MappingValue{mjcf_obstacle_keys()}},
-                     .words = "a mapping with `geoms` or `group`: more of them, what these geoms "
-                              "of `plant.mjcf` cover on the ground",
+                     .words = "a mapping with `geoms` or `group`: more of them, the areas that "
+                              "these geoms of `plant.mjcf` cover on the ground",
                      .see = "[below](#obstacles-from-the-plants-model)",
                      .fallback_words = "none"},
            .read = read_from_model,

@@ -72,7 +72,7 @@ void read_command(ScenarioReading& reading, Section& section, const KeyDescripti
     return;
   }
   if (command.empty() || command.front().empty()) {
-    section.note(about.name, "[PROGRAM, ARGUMENT, …], since controller.kind is external");
+    section.note(about.name, "[PROGRAM, ARGUMENT, …], because controller.kind is external");
   } else if (command.size() > kMostWords) {
     section.note(about.name, "at most 1000 words");
   }
@@ -83,7 +83,7 @@ void check_command(const ScenarioReading& reading, Section& section) {
   if (!reading.lookup.must_exist || !is_of_kind(reading.scenario, kExternalController)) return;
   if (finds_program(outside.command.front(), outside.folder)) return;
   section.note("command",
-               "a program on the PATH, or with a slash in its name one in " + outside.folder,
+               "a program on the PATH or, with a slash in its name, in " + outside.folder,
                "no program " + outside.command.front());
 }
 
@@ -125,7 +125,7 @@ void read_library(ScenarioReading& reading, Section& section, const KeyDescripti
   const std::string name = section.text(about.name, "", kLongestPath);
   const bool is_needed = is_of_kind(reading.scenario, kLibraryController);
   if (name.empty()) {
-    if (is_needed) section.note(about.name, "a shared library, since controller.kind is library");
+    if (is_needed) section.note(about.name, "a shared library, because controller.kind is library");
     return;
   }
   const fs::path path = absolute_path(folder_of(reading, section, about.name, {name}), name);
@@ -152,7 +152,7 @@ void read_options(ScenarioReading& reading, Section& section, const KeyDescripti
   if (options) {
     reading.scenario.controller.outside.options = compact_json_text(*options);
   } else {
-    section.note(about.name, "finite numbers, since they are handed on as JSON",
+    section.note(about.name, "finite numbers, because the options are passed on as JSON",
                  "a number that is not finite");
   }
 }
@@ -172,7 +172,7 @@ std::vector<ScenarioKey> outside_controller_keys() {
   return {
       {.about = {.name = "command",
                  .values = {list_of_values(TextValue{}, {.least = 1, .most = kMostWords})},
-                 .words = "of `external`: the program and its arguments; of `object`: its name",
+                 .words = "for `external`: the program and its arguments; for `object`: its name",
                  .see = "[controllers](controllers.md)",
                  .fallback_words = "required by it"},
        .read = read_command,
@@ -180,16 +180,16 @@ std::vector<ScenarioKey> outside_controller_keys() {
        .write = command_text},
       {.about = {.name = "folder",
                  .values = {TextValue{}},
-                 .words = "of `external`: the folder that it works in, absolute or relative to the "
-                          "scenario's",
+                 .words =
+                     "for `external`: its working folder, absolute or relative to the scenario's",
                  .fallback_words = "the scenario's; the working folder where `command` is given "
                                    "with `--set` and names no file there"},
        .read = read_folder,
        .write = folder_text},
       {.about = {.name = "library",
                  .values = {TextValue{}},
-                 .words = "of `library`: the shared library, absolute or relative to the "
-                          "scenario's folder (with `--set` at last to the working folder)",
+                 .words = "for `library`: the shared library, absolute or relative to the "
+                          "scenario's folder (with `--set`, otherwise to the working folder)",
                  .see = "[controllers](controllers.md)",
                  .fallback_words = "required by it"},
        .read = read_library,
@@ -197,20 +197,21 @@ std::vector<ScenarioKey> outside_controller_keys() {
       {.about = {.name = "options",
                  .values = {MappingValue{
                      {{.name = "OPTION", .family = NameFamily::kFree, .values = {AnyValue{}}}}}},
-                 .words = "of `external` and `library`: anything that the controller shall know, "
-                          "handed on as JSON",
+                 .words =
+                     "for `external` and `library`: settings for the controller, passed on as JSON",
                  .fallback_words = "none"},
        .read = read_options,
        .write = options_text},
       {.about = {.name = "plans",
                  .values = {FlagValue{}},
-                 .words = "of `external`, `library` and `object`: whether every answer has a plan "
+                 .words = "for `external`, `library` and `object`: whether every answer has a plan "
                           "of `horizon` stages, which is certified"},
        .member = [](Scenario& scenario) -> bool& { return scenario.controller.outside.plans; },
        .is_written = is_of_outside},
       {.about = {.name = "start_deadline",
                  .values = {NumberValue{kStartRange}},
-                 .words = "of `external` and `library`: time until the controller is ready",
+                 .words =
+                     "for `external` and `library`: maximum time until the controller is ready",
                  .unit = "s"},
        .member = [](Scenario& scenario) -> double& {
          return scenario.controller.outside.start_deadline;

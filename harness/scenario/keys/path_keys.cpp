@@ -44,7 +44,7 @@ void take_rows(ScenarioReading& reading, Section& section, PathRows read, const 
   if (!check_path_rows(rows, path.closed, note)) return;
   path.rows = std::move(rows);
   if (path.laps != 1 && !path.closed) {
-    section.note(kLapsKey, "1, as the path does not come back to where it begins");
+    section.note(kLapsKey, "1, because the path is not closed");
   }
   // The course and the road may depend on values with problems elsewhere.
   if (!reading.problems.empty()) return;
@@ -77,8 +77,8 @@ void read_listed_path(ScenarioReading& reading, Section& section) {
 void read_path_of_file(ScenarioReading& reading, Section& section) {
   const std::optional<std::string> file =
       named_file(section, kPathKey, reading.lookup.folder,
-                 "a list of points, or the path of a text file of them from the scenario's folder, "
-                 "or with --set from the working one");
+                 "a list of points, or the path of a text file of points, relative to the "
+                 "scenario's folder or, with --set, to the working folder");
   if (!file) return;
   std::optional<PathRows> rows = read_path_file(*file, reading.problems);
   if (!rows) return;
@@ -96,12 +96,12 @@ void read_path(ScenarioReading& reading, Section& section, const KeyDescription&
   if (!section.has(about.name)) {
     (void)section.tree(about.name);
     for (const char* key : {kClosedKey, kSpeedKey, kAccelerationKey, kTopSpeedKey, kLapsKey}) {
-      if (section.has(key)) section.note(key, "a target.path that it belongs to");
+      if (section.has(key)) section.note(key, "a target.path that it applies to");
     }
     return;
   }
   if (!has_plane(reading.system())) {
-    return section.note(about.name, "none, as the system has no position in the plane");
+    return section.note(about.name, "none, because the system has no position in the plane");
   }
   if (section.tree(about.name)->kind == YamlNode::Kind::kList) {
     read_listed_path(reading, section);
@@ -153,16 +153,16 @@ void check_path(const ScenarioReading& reading, Section& section) {
     section.note(kPathKey, "a controller that follows paths", what);
   };
   if (is_outside(controller) || controller.kind == kObjectController) {
-    refuse("one to be followed by the controller " + controller.kind);
+    refuse("a path with the controller " + controller.kind);
   } else if (driving_kind(controller) == "lqr" && controller.lqr_about == "target") {
-    refuse("one to be followed by lqr about the target");
+    refuse("a path with lqr about the target");
   } else if (controller.guide != "none") {
-    refuse("one to be followed along the guide " + controller.guide);
+    refuse("a path with the guide " + controller.guide);
   } else if (controller.penalty.shape == "thesis" && scenario.target.path.has_widths()) {
-    refuse("a road with controller.penalty.shape thesis, which is for boxes");
+    refuse("a road with controller.penalty.shape thesis, which supports only boxes");
   }
   if (!scenario.target.angles.empty()) {
-    section.note("angles", "none, as the headings along a path have no jumps");
+    section.note("angles", "none, because the headings along a path have no jumps");
   }
 }
 
@@ -179,7 +179,7 @@ ListValue path_rows_value() {
 ScenarioKey speed_key() {
   return {.about = {.name = kSpeedKey,
                     .values = {NumberValue{kPathSpeeds}, TextValue{.pattern = "^fast$"}},
-                    .words = "at which a path is followed, {range}; or `fast`: as fast as "
+                    .words = "speed at which a path is followed, {range}; or `fast`: as fast as "
                              "`acceleration` and `top_speed` allow",
                     .unit = "m/s",
                     .fallback_words = "the model's, where it has one; else required with a path"},
@@ -195,8 +195,8 @@ ScenarioKey acceleration_key() {
   return {
       .about = {.name = kAccelerationKey,
                 .values = {VectorValue{.size = Dimension::kAny, .length = 2, .range = kPathSpeeds}},
-                .words = "`[along, across]`: of a `fast` path, along it and towards the inside "
-                         "of bends",
+                .words = "for a `fast` path: limits `[along, across]`, along it and towards the "
+                         "inside of bends",
                 .unit = "m/s²",
                 .fallback_words = "`[2, 2]`"},
       .read = read_acceleration,
@@ -213,14 +213,14 @@ std::vector<ScenarioKey> path_keys() {
   return {
       {.about = {.name = kLapsKey,
                  .values = {WholeValue{1, 1000}},
-                 .words = "times that a closed path is gone round, {range}"},
+                 .words = "number of laps of a closed path, {range}"},
        .member = [](Scenario& scenario) -> int& { return scenario.target.path.laps; },
        .is_written = has_path},
       speed_key(),
       acceleration_key(),
       {.about = {.name = kTopSpeedKey,
                  .values = {NumberValue{kPositive}},
-                 .words = "of a `fast` path, {range}",
+                 .words = "for a `fast` path: speed limit, {range}",
                  .unit = "m/s",
                  .fallback_words = "any"},
        .member = [](Scenario& scenario) -> double& { return scenario.target.path.limits.top; },
@@ -230,8 +230,8 @@ std::vector<ScenarioKey> path_keys() {
            }},
       {.about = {.name = kClosedKey,
                  .values = {FlagValue{}},
-                 .words = "whether the path goes on from its last point to its first",
-                 .fallback_words = "whether it comes as near to it as its points are apart"},
+                 .words = "whether the path continues from its last point to its first",
+                 .fallback_words = "whether these are as close as its neighbouring points"},
        .read = read_with_path,
        .write =
            [](const Scenario& scenario, const models::SystemDescription& /*system*/) {
@@ -239,17 +239,17 @@ std::vector<ScenarioKey> path_keys() {
                return std::string(path.closed ? "true" : "false");
              });
            }},
-      {.about = {.name = kPathKey,
-                 .values = {TextValue{.what = "a path"}, path_rows_value()},
-                 .words = fmt::format(
-                     "instead of `state`, a path to be followed: a list of up to {} points "
-                     "`[x, y]` or `[x, y, right width, left width]`, or the path of a text file "
-                     "of them, absolute or relative to the scenario's folder. With widths, "
-                     "what is off the road is unsafe",
-                     kMostPathRows),
-                 .see = "[below](#paths)",
-                 .unit = "m",
-                 .fallback_words = "none"},
+      {.about =
+           {.name = kPathKey,
+            .values = {TextValue{.what = "a path"}, path_rows_value()},
+            .words = fmt::format(
+                "instead of `state`, a path to follow: a list of up to {} points `[x, y]` or `[x, "
+                "y, right width, left width]`, or the path of a text file of points, absolute or "
+                "relative to the scenario's folder. With widths, everything off the road is unsafe",
+                kMostPathRows),
+            .see = "[below](#paths)",
+            .unit = "m",
+            .fallback_words = "none"},
        .read = read_path,
        .check = check_path,
        .write = [](const Scenario& scenario, const models::SystemDescription& /*system*/) {

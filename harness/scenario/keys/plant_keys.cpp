@@ -33,7 +33,7 @@ void read_mjcf(ScenarioReading& reading, Section& section, const KeyDescription&
   if (path.empty() && section.is_override(about.name)) path = find_mjcf(name, "");
   plant.mjcf = path.empty() && !reading.lookup.must_exist ? name : path;
   if (name.empty() && is_needed) {
-    section.note(about.name, "a MuJoCo XML file, since the plant's kind is mujoco");
+    section.note(about.name, "a MuJoCo XML file, because the plant's kind is mujoco");
   } else if (plant.mjcf.empty() && (is_needed || section.has(about.name)) && !name.empty()) {
     section.note(about.name,
                  "a file beside the scenario, or " + expected_names(name, shipped_mjcf_names()),
@@ -58,10 +58,10 @@ ScenarioKey mjcf_key() {
   return {
       .about = {.name = "mjcf",
                 .values = {TextValue{}},
-                .words = "MuJoCo XML file: an absolute path, relative to the scenario's folder, or "
-                         "a shipped name, looked for in this order; with `--set` at last relative "
-                         "to the working folder. For an analytic plant it is only drawn, and may "
-                         "be `\"\"`",
+                .words =
+                    "MuJoCo XML file: an absolute path, a path relative to the scenario's folder, "
+                    "or a shipped name, searched in this order; with `--set`, finally relative to "
+                    "the working folder. For an analytic plant it is only drawn, and may be `\"\"`",
                 .fallback_words = "the wheeled vehicle of the system, or the only one, see "
                                   "[plants](plants.md); none for an analytic plant without a place "
                                   "in the plane"},
@@ -74,10 +74,10 @@ ScenarioKey mjcf_key() {
 ScenarioKey plant_time_step_key() {
   return {.about = {.name = "time_step",
                     .values = {NumberValue{{.least = kShortestSimulatorStep}}},
-                    .words = "time step of the simulator, {range} and at most `time_step`, which "
-                             "it divides",
+                    .words = "time step of the simulator, {range} and at most `time_step`, of "
+                             "which it must be a divisor",
                     .unit = "s",
-                    .fallback_words = "the XML's"},
+                    .fallback_words = "the XML file's"},
           .read = read_plant_time_step,
           .write = [](const Scenario& scenario,
                       const models::SystemDescription& /*system*/) -> std::optional<std::string> {
@@ -89,8 +89,8 @@ ScenarioKey plant_time_step_key() {
 ScenarioKey solid_key() {
   return {.about = {.name = "solid",
                     .values = {FlagValue{}},
-                    .words = "whether the bounds of the position and the obstacles stand in the "
-                             "MuJoCo vehicle's way, and what touches them is recorded",
+                    .words = "whether the bounds of the position and the obstacles are solid for "
+                             "the MuJoCo vehicle, with its contacts recorded",
                     .see = "[plants](plants.md#solid-walls-and-obstacles)"},
           .member = [](Scenario& scenario) -> bool& { return scenario.plant.solid; },
           .check =
@@ -100,7 +100,7 @@ ScenarioKey solid_key() {
                 if (reading.scenario.plant.kind == "analytic") {
                   section.note("solid", "false, or plant.kind: mujoco");
                 } else if (system.position_x < 0 || system.position_y < 0) {
-                  section.note("solid", "false, as the system has no position in the plane");
+                  section.note("solid", "false, because the system has no position in the plane");
                 }
               }};
 }
@@ -109,7 +109,7 @@ ScenarioKey mapping_key() {
   return {.about = {.values = {MappingValue{plant_mapping_keys()}},
                     .words = "how the system appears in the MuJoCo model",
                     .see = "[plants](plants.md#mapping)",
-                    .fallback_words = "what the XML says of itself"},
+                    .fallback_words = "the mapping in the XML file"},
           .read = read_mapping,
           .write = [](const Scenario& scenario,
                       const models::SystemDescription& /*system*/) -> std::optional<std::string> {
@@ -137,37 +137,36 @@ ScenarioKey plant_key() {
 }
 
 ScenarioKey model_error_key() {
-  return {
-      .about = {.name = "model_error",
-                .values = {TextValue{}, MappingValue{model_error_keys()}},
-                .words = "a mapping of the keys below, or the path of a YAML file with them, "
-                         "absolute or relative to the scenario's folder (with `--set` else to the "
-                         "working folder): how far the plant is from the model",
-                .see = "[below](#a-plant-that-is-not-the-model)",
-                .fallback_words = "none: certificates speak of the model"},
-      .read =
-          [](ScenarioReading& reading, Section& section, const KeyDescription& /*about*/) {
-            std::optional<StatedModelError> stated =
-                read_model_error(section, reading.problems,
-                                 {.system = reading.scenario.model.system,
-                                  .dim = std::ssize(reading.system().states),
-                                  .folder = reading.lookup.folder,
-                                  .parameters = reading.scenario.model.parameters,
-                                  .time_step = reading.scenario.time_step});
-            if (!stated) return;
-            reading.scenario.model_error = std::move(stated->error);
-            reading.scenario.error_origin = std::move(stated->origin);
+  return {.about = {.name = "model_error",
+                    .values = {TextValue{}, MappingValue{model_error_keys()}},
+                    .words = "how far the plant is from the model: a mapping of the keys below, or "
+                             "the path of a YAML file with them, absolute or relative to the "
+                             "scenario's folder (with `--set`, otherwise to the working folder)",
+                    .see = "[below](#a-plant-that-is-not-the-model)",
+                    .fallback_words = "none: certificates apply to the model"},
+          .read =
+              [](ScenarioReading& reading, Section& section, const KeyDescription& /*about*/) {
+                std::optional<StatedModelError> stated =
+                    read_model_error(section, reading.problems,
+                                     {.system = reading.scenario.model.system,
+                                      .dim = std::ssize(reading.system().states),
+                                      .folder = reading.lookup.folder,
+                                      .parameters = reading.scenario.model.parameters,
+                                      .time_step = reading.scenario.time_step});
+                if (!stated) return;
+                reading.scenario.model_error = std::move(stated->error);
+                reading.scenario.error_origin = std::move(stated->origin);
+              },
+          .write = [](const Scenario& scenario,
+                      const models::SystemDescription& /*system*/) -> std::optional<std::string> {
+            if (!scenario.model_error) return std::nullopt;
+            std::string text =
+                "\n" + model_error_text({*scenario.model_error, scenario.error_origin}, "  ");
+            text.pop_back();  // the final line feed
+            return text;
           },
-      .write = [](const Scenario& scenario,
-                  const models::SystemDescription& /*system*/) -> std::optional<std::string> {
-        if (!scenario.model_error) return std::nullopt;
-        std::string text =
-            "\n" + model_error_text({*scenario.model_error, scenario.error_origin}, "  ");
-        text.pop_back();  // the final line feed
-        return text;
-      },
-      .after = ReadAfter::kSystem,
-      .table = "plant"};
+          .after = ReadAfter::kSystem,
+          .table = "plant"};
 }
 
 }  // namespace qsmpc::harness

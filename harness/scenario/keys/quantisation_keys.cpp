@@ -30,26 +30,25 @@ ScenarioKey quantisation_key() {
   return {
       .about = {.name = "quantisation",
                 .words =
-                    "how many points there are: the keys below, or `auto`, which is `tolerance` "
-                    "with " +
+                    "numbers of points: the keys below, or `auto`, which sets `tolerance` to " +
                     fmt::format("{:g}", kAutoTolerance),
                 .see = "[below](#how-many-points)"},
       .keys =
           {points_key(
-               "state", "points that stand for the belief",
+               "state", "number of points that represent the belief",
                [](Scenario& scenario) -> int& { return scenario.controller.quantisation.state; }),
            points_key(
                "noise",
-               "points that stand for the disturbance, {range}; with `mixture` the parts that one "
-               "point's noise is cut into at most",
+               "number of points that represent the disturbance, {range}; with `mixture`, the "
+               "maximum number of parts that one point's noise is cut into",
                [](Scenario& scenario) -> int& { return scenario.controller.quantisation.noise; }),
-           points_key("compressed", "points kept after each step of the prediction",
+           points_key("compressed", "number of points kept after each step of the prediction",
                       [](Scenario& scenario) -> int& {
                         return scenario.controller.quantisation.compressed;
                       }),
            {.about = {.name = "quantiser",
                       .values = {NameValue{quantiser_names()}},
-                      .words = "what finds the points of the belief, a name from `qsmpc list "
+                      .words = "how the points of the belief are computed, a name from `qsmpc list "
                                "quantisers`",
                       .see = "[below](#how-noise-is-predicted)"},
             .member = [](Scenario& scenario) -> std::string& {
@@ -58,9 +57,9 @@ ScenarioKey quantisation_key() {
            {.about = {.name = "tolerance",
                       .values = {NumberValue{{.least = 0.0, .most = 1.0}}},
                       .words =
-                          "share of a plan's cost by which fewer points than the above may mislead "
-                          "the controller `quantised`, {range}: as few stand for the belief and "
-                          "are kept as that allows; 0: all of them",
+                          "for the controller `quantised`: permitted error from using fewer points "
+                          "than the above, as a share of a plan's cost, {range}; the belief and "
+                          "the prediction use as few points as that allows; 0: all of them",
                       .see = "[below](#how-many-points)"},
             .member = [](Scenario& scenario) -> double& {
               return scenario.controller.quantisation.tolerance;
@@ -86,7 +85,7 @@ std::vector<ScenarioKey> prediction_keys() {
        .member = [](Scenario& scenario) -> bool& { return scenario.controller.propagate_noise; }},
       {.about = {.name = "propagator",
                  .values = {NameValue{propagator_names()}},
-                 .words = "how it does: {names}",
+                 .words = "how the prediction includes the disturbance: {names}",
                  .see = "[below](#how-noise-is-predicted)"},
        .member = [](Scenario& scenario) -> std::string& { return scenario.controller.propagator; },
        .check = check_propagator}};

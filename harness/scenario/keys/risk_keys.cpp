@@ -12,12 +12,13 @@ constexpr NumberRange kProbability{.least = 0.0, .most = 1.0};
 
 void check_otherwise(const ScenarioReading& reading, Section& section) {
   if (reading.scenario.risk.otherwise == "model" && !reading.scenario.model_error) {
-    section.note("otherwise", "least_risk, brake or previous, or a model_error to plan without");
+    section.note("otherwise",
+                 "least_risk, brake or previous, or a model_error for model to leave out");
   }
   if (reading.scenario.risk.otherwise != "brake" || reading.dynamics == nullptr) return;
   if (controller::speeds_of(*reading.dynamics).empty()) {
     section.note("otherwise",
-                 "least_risk or previous, since no state of this system is a speed to brake");
+                 "least_risk or previous, because no state of this system is a speed to brake");
   }
 }
 
@@ -39,20 +40,22 @@ ScenarioKey risk_key() {
       .about = {.name = "risk"},
       .is_written = [](const Scenario& scenario) { return scenario.risk.any(); },
       .keys = {limit_of(
-                   "stage", "upper limit of what is certified of each stage of a plan",
+                   "stage",
+                   "upper limit on the certified probability that a stage of a plan is unsafe, for "
+                   "each stage",
                    [](Scenario& scenario) -> double& { return scenario.risk.stage; },
                    [](const Scenario& scenario) { return std::isfinite(scenario.risk.stage); }),
                limit_of(
-                   "plan", "the same of any stage of a plan",
+                   "plan", "the same for the probability that any stage of a plan is unsafe",
                    [](Scenario& scenario) -> double& { return scenario.risk.plan; },
                    [](const Scenario& scenario) { return std::isfinite(scenario.risk.plan); }),
                limit_of(
-                   "mission", "the same of the whole drive",
+                   "mission", "the same for the whole drive",
                    [](Scenario& scenario) -> double& { return scenario.risk.mission; },
                    [](const Scenario& scenario) { return std::isfinite(scenario.risk.mission); }),
                {.about = {.name = "otherwise",
                           .values = {NameValue{risk_otherwise_names()}},
-                          .words = "what is done where no plan within the limits is found: {names}",
+                          .words = "what to do if no plan within the limits is found: {names}",
                           .see = "[below](#risk)"},
                 .member = [](Scenario& scenario) -> std::string& {
                   return scenario.risk.otherwise;

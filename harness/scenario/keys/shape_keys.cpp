@@ -66,8 +66,7 @@ PlanarShape read_half_plane(Section& half_plane) {
       .offset = read_required(half_plane, "offset", {}, "a finite number")};
   const double length = shape.normal.norm();
   if (length < kShapeSizes.least) {
-    half_plane.note("normal", "a direction, of a length of at least 1e-06",
-                    yaml_list(shape.normal));
+    half_plane.note("normal", "a direction of length at least 1e-06", yaml_list(shape.normal));
   } else if (std::abs(shape.offset) > kShapePlaces.most * length) {
     half_plane.note("offset", "at most 1e7 times the length of the normal");
   }
@@ -159,7 +158,7 @@ std::vector<KeyDescription> shape_keys() {
                               .required = true};
   const KeyDescription offset{.name = "offset",
                               .values = {NumberValue{}},
-                              .words = "of the edge along the normal",
+                              .words = "offset of the edge along the normal",
                               .unit = "m",
                               .required = true};
   const VectorValue corner{.size = Dimension::kAny, .length = 2, .range = kShapePlaces};
@@ -167,16 +166,18 @@ std::vector<KeyDescription> shape_keys() {
       shape_key(kDisc, "a disc", {centre_key(), radius}),
       shape_key(kEllipse, "an ellipse",
                 {centre_key(), pair_key("semi_axes", "half its length and width", kShapeSizes),
-                 angle_key("from the x axis to the first of them")}),
+                 angle_key("angle from the x axis to the first of them")}),
       shape_key(kTurnedBox, "a rectangle",
                 {centre_key(), pair_key("size", "its length and width", kShapeSizes),
-                 angle_key("from the x axis to its length")}),
+                 angle_key("angle from the x axis to its length")}),
       {.name = kPolygon,
        .values = {list_of_values(corner, {.least = 3, .most = kMostCorners})},
-       .words = "the corners of a polygon in turn; it may be concave, but must not meet itself"},
+       .words =
+           "the corners of a polygon in order; it may be concave, but must not intersect itself"},
       shape_key(
           kHalfPlane, "all points p with normal · p ≥ offset",
-          {pair_key("normal", "into what is unsafe, of any length but 0", kShapePlaces), offset})};
+          {pair_key("normal", "normal into the unsafe side, of any length except 0", kShapePlaces),
+           offset})};
 }
 
 const std::vector<std::string>& shape_names() {

@@ -14,7 +14,7 @@ constexpr const char* kPoint = "point";
 constexpr const char* kFromMjcf = "from_mjcf";
 constexpr std::size_t kMostFootprintDiscs = 100;  // every particle is tested against each of them
 constexpr NumberRange kDiscRadius{.least = 0.0, .most = 1e6, .above_least = true};
-constexpr const char* kNoPosition = "point, as the system has no position in the plane";
+constexpr const char* kNoPosition = "point, because the system has no position in the plane";
 
 bool has_position(const models::SystemDescription& system) {
   return system.position_x >= 0 && system.position_y >= 0;
@@ -31,7 +31,8 @@ void read_from_mjcf(ScenarioReading& reading, Section& section, const std::strin
   const Scenario::Plant& plant = reading.scenario.plant;
   if (!has_position(reading.system())) return section.note(key, kNoPosition);
   if (!reading.problems.empty()) return;  // they may concern the file or its mapping
-  if (plant.mjcf.empty()) return section.note(key, "point or discs, as there is no plant.mjcf");
+  if (plant.mjcf.empty())
+    return section.note(key, "point or discs, because there is no plant.mjcf");
   try {
     reading.scenario.safe_set.body.discs = vehicle_footprint(
         plant.mjcf, plant.mapping,
@@ -56,7 +57,7 @@ void read_discs(ScenarioReading& reading, Section& section, const KeyDescription
     const std::optional<Eigen::VectorXd> offset = item.vector("offset", 2);
     if (offset) disc.offset = *offset;
     if (system.heading < 0 && !disc.offset.isZero(0.0)) {
-      item.note("offset", "[0, 0], as the system has no heading");
+      item.note("offset", "[0, 0], because the system has no heading");
       disc.offset.setZero();  // so that the following checks can run
     }
     item.refuse_unread();
@@ -95,7 +96,7 @@ ListValue disc_list() {
       .name = "radius", .values = {NumberValue{kDiscRadius}}, .unit = "m", .required = true};
   const KeyDescription offset{.name = "offset",
                               .values = {VectorValue{.size = Dimension::kAny, .length = 2}},
-                              .words = "of the centre from the position: forward, left",
+                              .words = "offset of the centre from the position: forward, left",
                               .unit = "m",
                               .fallback_words = "`[0, 0]`"};
   return list_of_values(MappingValue{{radius, offset}}, {.least = 1, .most = kMostFootprintDiscs});
@@ -104,25 +105,26 @@ ListValue disc_list() {
 }  // namespace
 
 ScenarioKey vehicle_key() {
-  return {.about = {.name = "vehicle"},
-          .keys = {{.about = {.name = "footprint",
-                              .values = {TextValue{.what = "point or from_mjcf",
-                                                   .pattern = "^(point|from_mjcf)$"},
-                                         disc_list()},
-                              .words = "what has to keep clear of the unsafe set: a list of discs "
-                                       "`{radius: R, offset: [FORWARD, LEFT]}` about the "
-                                       "position, in the vehicle's frame (offset 0 unless given); "
-                                       "`from_mjcf`, discs that cover the vehicle of "
-                                       "`plant.mjcf`; or `point`, the position alone",
-                              .see = "[below](#the-vehicles-body)",
-                              .unit = "m",
-                              .fallback_words = "`from_mjcf` where `plant.mjcf` is not empty and "
-                                                "the system has a position, else `point`"},
-                    .read = read_footprint,
-                    .write = footprint_text}},
-          .layout = SectionLayout::kFlow,
-          .after = ReadAfter::kSystem,
-          .table = "plant"};
+  return {
+      .about = {.name = "vehicle"},
+      .keys = {{.about = {.name = "footprint",
+                          .values = {TextValue{.what = "point or from_mjcf",
+                                               .pattern = "^(point|from_mjcf)$"},
+                                     disc_list()},
+                          .words =
+                              "what must stay clear of the unsafe set: a list of discs `{radius: "
+                              "R, offset: [FORWARD, LEFT]}` about the position, in the vehicle's "
+                              "frame (offset 0 unless given); `from_mjcf`, discs that cover the "
+                              "vehicle of `plant.mjcf`; or `point`, the position alone",
+                          .see = "[below](#the-vehicles-body)",
+                          .unit = "m",
+                          .fallback_words = "`from_mjcf` where `plant.mjcf` is not empty and "
+                                            "the system has a position, else `point`"},
+                .read = read_footprint,
+                .write = footprint_text}},
+      .layout = SectionLayout::kFlow,
+      .after = ReadAfter::kSystem,
+      .table = "plant"};
 }
 
 }  // namespace qsmpc::harness

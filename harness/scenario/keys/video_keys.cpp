@@ -86,7 +86,7 @@ ScenarioKey video_key() {
                size_key(),
                {.about = {.name = "fps",
                           .values = {kFpsRange},
-                          .words = "frames a second",
+                          .words = "frames per second",
                           .unit = "1/s"},
                 .member = [](Scenario& scenario) -> int& { return scenario.video.fps; }},
                overlays_key()},

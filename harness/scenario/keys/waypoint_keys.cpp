@@ -58,8 +58,8 @@ void check_places(const Eigen::MatrixXd& states, const models::SystemDescription
     const Eigen::VectorXd step = states.col(i) - states.col(i - 1);
     if (step[system.position_x] != 0.0 || step[system.position_y] != 0.0) continue;
     section.note_item(kWaypointsKey, static_cast<std::size_t>(i),
-                      "another place than that of the waypoint before",
-                      fmt::format("({:g}, {:g}) once more", states(system.position_x, i),
+                      "a place other than that of the previous waypoint",
+                      fmt::format("({:g}, {:g}) again", states(system.position_x, i),
                                   states(system.position_y, i)));
   }
 }
@@ -68,18 +68,18 @@ void read_waypoints(ScenarioReading& reading, Section& section, const KeyDescrip
   if (!section.has(about.name)) {
     (void)section.tree(about.name);
     if (section.has(kRadiusKey)) {
-      section.note(kRadiusKey, "target.waypoints that it belongs to");
+      section.note(kRadiusKey, "target.waypoints that it applies to");
     }
     return;
   }
   const models::SystemDescription& system = reading.system();
   if (system.position_x < 0 || system.position_y < 0) {
     (void)section.tree(about.name);
-    return section.note(about.name, "none, as the system has no position in the plane");
+    return section.note(about.name, "none, because the system has no position in the plane");
   }
   if (section.has("path")) {
     (void)section.tree(about.name);
-    return section.note(about.name, "none beside a path: one of them says where to go");
+    return section.note(about.name, "none beside a path: only one of them can say where to go");
   }
   const auto n = static_cast<std::size_t>(std::ssize(system.states));
   auto rows = read_rows(section, about.name,
@@ -115,12 +115,12 @@ void check_waypoints(const ScenarioReading& reading, Section& section) {
   }
   const Scenario::Controller& controller = scenario.controller;
   const auto refuse = [&](const std::string& what) {
-    section.note(kWaypointsKey, "a controller that drives to one after the other", what);
+    section.note(kWaypointsKey, "a controller that drives to waypoints in turn", what);
   };
   if (driving_kind(controller) == "lqr" && controller.lqr_about == "target") {
-    refuse("waypoints for lqr about the target");
+    refuse("waypoints with lqr about the target");
   } else if (controller.guide != "none") {
-    refuse("waypoints for the guide " + controller.guide);
+    refuse("waypoints with the guide " + controller.guide);
   }
 }
 
@@ -135,34 +135,33 @@ std::optional<std::string> waypoints_text(const Scenario& scenario,
 }  // namespace
 
 std::vector<ScenarioKey> waypoint_keys() {
-  return {
-      {.about = {.name = kRadiusKey,
-                 .values = {NumberValue{kPositive}},
-                 .words = "distance in the plane at which a waypoint but the last counts as "
-                          "passed, {range}",
-                 .unit = "m",
-                 .fallback_words = "`target.radius`"},
-       // Does nothing: `waypoints` reads this key.
-       .read = [](ScenarioReading& /*reading*/, Section& section,
-                  const KeyDescription& about) { (void)section.tree(about.name); },
-       .write = [](const Scenario& scenario,
-                   const models::SystemDescription& /*system*/) -> std::optional<std::string> {
-         if (!has_waypoints(scenario)) return std::nullopt;
-         return yaml_number(scenario.target.route->radius);
-       }},
-      {.about = {.name = kWaypointsKey,
-                 .values = {list_of_values(VectorValue{.size = Dimension::kAny},
-                                           {.least = 1, .most = kMostWaypoints})},
-                 .words = fmt::format("instead of `state`, a list of up to {} places that are "
-                                      "driven to in turn, `[x, y]` or *n* numbers each; the drive "
-                                      "ends at the last",
-                                      kMostWaypoints),
-                 .see = "[below](#waypoints)",
-                 .unit = "m",
-                 .fallback_words = "none"},
-       .read = read_waypoints,
-       .check = check_waypoints,
-       .write = waypoints_text}};
+  return {{.about = {.name = kRadiusKey,
+                     .values = {NumberValue{kPositive}},
+                     .words = "distance in the plane at which each waypoint except the last counts "
+                              "as passed, {range}",
+                     .unit = "m",
+                     .fallback_words = "`target.radius`"},
+           // Does nothing: `waypoints` reads this key.
+           .read = [](ScenarioReading& /*reading*/, Section& section,
+                      const KeyDescription& about) { (void)section.tree(about.name); },
+           .write = [](const Scenario& scenario,
+                       const models::SystemDescription& /*system*/) -> std::optional<std::string> {
+             if (!has_waypoints(scenario)) return std::nullopt;
+             return yaml_number(scenario.target.route->radius);
+           }},
+          {.about = {.name = kWaypointsKey,
+                     .values = {list_of_values(VectorValue{.size = Dimension::kAny},
+                                               {.least = 1, .most = kMostWaypoints})},
+                     .words = fmt::format(
+                         "instead of `state`, a list of up to {} places to drive to in turn, `[x, "
+                         "y]` or *n* numbers each; the drive ends at the last",
+                         kMostWaypoints),
+                     .see = "[below](#waypoints)",
+                     .unit = "m",
+                     .fallback_words = "none"},
+           .read = read_waypoints,
+           .check = check_waypoints,
+           .write = waypoints_text}};
 }
 
 }  // namespace qsmpc::harness

@@ -25,12 +25,12 @@ void check_sizes(const EquationSystem& system) {
     throw EquationError(
         {.section = section, .found = std::move(found), .expected = std::move(expected)});
   };
-  if (system.states.empty()) refuse("states", "none", "one at least");
-  if (system.inputs.empty()) refuse("inputs", "none", "one at least");
+  if (system.states.empty()) refuse("states", "none", "at least one");
+  if (system.inputs.empty()) refuse("inputs", "none", "at least one");
   const std::size_t coordinates = system.states.size() + system.inputs.size();
   if (coordinates > kMostCoordinates) {
     refuse("states", std::to_string(coordinates) + " states and inputs",
-           std::to_string(kMostCoordinates) + " at most");
+           "at most " + std::to_string(kMostCoordinates));
   }
 }
 

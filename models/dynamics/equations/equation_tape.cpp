@@ -119,7 +119,7 @@ class TapeMaker {
       if (std::ranges::find(states, equation.name) != states.end()) continue;
       throw EquationError({.section = kEquations,
                            .name = equation.name,
-                           .found = "an equation of '" + equation.name + "'",
+                           .found = "an equation for '" + equation.name + "'",
                            .unknown = equation.name,
                            .known = states});
     }
@@ -130,7 +130,7 @@ class TapeMaker {
         throw EquationError({.section = kEquations,
                              .name = state,
                              .found = "nothing",
-                             .expected = "the equation of this state"});
+                             .expected = "an equation for this state"});
       }
       equations_.push_back(parsed(kEquations, *equation));
     }
@@ -196,8 +196,8 @@ class TapeMaker {
       for (const std::string& name : open_) circle += name + ", ";
       throw EquationError({.section = kDefine,
                            .name = definition.name,
-                           .found = "a definition by itself: " + circle + definition.name,
-                           .expected = "definitions that do not need each other in a circle"});
+                           .found = "a circular definition: " + circle + definition.name,
+                           .expected = "definitions without circular references"});
     }
     open_.push_back(definition.name);
     const Id value = evaluated(definition);

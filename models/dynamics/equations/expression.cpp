@@ -43,7 +43,7 @@ class Parser {
   Expression parse() {
     if (text_.size() > kLongest) {
       throw ExpressionError(0, std::to_string(text_.size()) + " bytes",
-                            "a formula of at most " + std::to_string(kLongest));
+                            "a formula of at most " + std::to_string(kLongest) + " bytes");
     }
     sum();
     skip_space();

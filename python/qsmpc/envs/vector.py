@@ -41,7 +41,7 @@ class VectorEnvironment(VectorEnv[Floats, Floats, Floats]):
     ) -> None:
         """As `Environment`. ``threads``: the number used for steps; results do not depend on it."""
         if num_envs < 1 or threads < 1:
-            raise ValueError("num_envs and threads are at least 1")
+            raise ValueError("num_envs and threads must be at least 1")
         base = as_scenario(scenario)
         self.scenario = base.set(settings) if settings else base
         self.num_envs = num_envs

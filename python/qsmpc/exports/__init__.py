@@ -38,8 +38,9 @@ def _checked(path: Path, ending: str) -> str:
 def export_rerun(trace: Union[Episode, Path], path: Path) -> None:
     """Writes an episode, or the one in a trace or folder, as a recording of Rerun (``.rrd``).
 
-    The file is there whole or not at all. Needs the package rerun-sdk (``qsmpc[rerun]``). Raises
-    `ValueError` on another ending, `InputError` on what is no trace, and `IoError`.
+    The file is written completely or not at all. Needs the package rerun-sdk
+    (``qsmpc[rerun]``). Raises `ValueError` on another extension, `InputError` on what is not a
+    trace, and `IoError`.
     """
     target = _checked(path, ".rrd")
     rerun_file = _module("rerun_file", "rerun-sdk", "rerun")
@@ -51,8 +52,8 @@ def export_rerun(trace: Union[Episode, Path], path: Path) -> None:
 def export_mcap(trace: Union[Episode, Path], path: Path) -> None:
     """Writes an episode, or the one in a trace or folder, as MCAP with Foxglove's schemas in JSON.
 
-    The file is there whole or not at all. Needs the package mcap (``qsmpc[mcap]``). Raises
-    `ValueError` on another ending, `InputError` on what is no trace, and `IoError`.
+    The file is written completely or not at all. Needs the package mcap (``qsmpc[mcap]``). Raises
+    `ValueError` on another extension, `InputError` on what is not a trace, and `IoError`.
     """
     target = _checked(path, ".mcap")
     mcap_file = _module("mcap_file", "mcap", "mcap")

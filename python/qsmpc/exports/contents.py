@@ -226,7 +226,7 @@ class Contents:
             "outcome": episode.outcome,
             "duration": f"{episode.duration:g} s, {episode.steps} periods",
             "version": episode.core.version,
-            "certificates": "upper bounds of the probability to be unsafe",
+            "certificates": "upper bounds of the probability of being unsafe",
         }
         if episode.fault:
             words["fault"] = episode.fault

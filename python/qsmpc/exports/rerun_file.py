@@ -49,7 +49,7 @@ class _Recording:
         digest.update(contents.episode.states.tobytes() + contents.episode.inputs.tobytes())
         self.stream = rr.RecordingStream("qsmpc", recording_id=digest.hexdigest()[:32])
         if not rr.is_enabled(self.stream):
-            raise RuntimeError("export_rerun: Rerun is switched off by the environment (RERUN)")
+            raise RuntimeError("export_rerun: Rerun is disabled by the environment variable RERUN")
         # In memory: with a file on a full disk, Rerun would wait forever.
         self.memory = self.stream.memory_recording()
 

@@ -43,7 +43,7 @@ TEST(MemoryNeed, beyond_the_share_is_a_problem) {
   const Scenario large = with_sizes(1000, 100'000, 100, 100'000);
   const auto problem = memory_problem(large, 1, 64.0 * kGiga);
   ASSERT_TRUE(problem.has_value());
-  EXPECT_THAT(problem->found, HasSubstr("a horizon of 1000 with 100000 points of the state"));
+  EXPECT_THAT(problem->found, HasSubstr("a horizon of 1000 with 100000 state points"));
   EXPECT_THAT(problem->expected, HasSubstr("at most 48 GB, 75 % of the memory"));
 
   const Scenario usual = with_sizes(12, 100, 100, 100);

@@ -76,7 +76,7 @@ TEST(BrokenCampaign, seeds) {
                   "from 1 to 1000000000"});
   expect_refused({head + "seeds: {count: 1, first: 0.5}\n", 2, "seeds.first", "0.5", whole});
   expect_refused({head + "seeds:\n  count: 2\n  first: 9223372036854775807\n", 4, "seeds.first",
-                  "9223372036854775807 with a count of 2", "no seed over 9223372036854775807"});
+                  "9223372036854775807 with a count of 2", "no seed above 9223372036854775807"});
   expect_refused(
       {head + "seeds: {count: 1, last: 3}\n", 2, "seeds.last", "an unknown key", "count"});
 }
@@ -140,11 +140,11 @@ TEST(BrokenCampaign, a_wrong_setting_is_at_its_key_in_the_campaign) {
 }
 
 TEST(BrokenCampaign, a_setting_that_breaks_another_value_of_the_scenario_is_named) {
-  expect_refused({two_lines +
-                      "variants:\n  a:\n    limit.steps: 3\n    safe_set.bounds.x: [1, 9]\n" +
-                      "    controller.horizon: 2\n",
-                  6, "variants.a.safe_set.bounds.x",
-                  "with it initial_state.mean: x = 0, outside of the bounds 1 < x < 9", ""});
+  expect_refused(
+      {two_lines + "variants:\n  a:\n    limit.steps: 3\n    safe_set.bounds.x: [1, 9]\n" +
+           "    controller.horizon: 2\n",
+       6, "variants.a.safe_set.bounds.x",
+       "with this setting, initial_state.mean: x = 0, outside of the bounds 1 < x < 9", ""});
 }
 
 TEST(BrokenCampaign, every_wrong_value_is_told_once_by_the_validation) {

@@ -156,7 +156,7 @@ TEST_F(Merge, says_which_episode_is_double) {
     store.add(testing::example_row(1, 5), false);
   }
   EXPECT_THAT(refusal({shard(campaign, {.index = 1, .count = 2}), second}),
-              HasSubstr("found variant two, seed 5, which another shard has, too"));
+              HasSubstr("found variant two, seed 5, which another shard also has"));
 }
 
 TEST_F(Merge, says_which_episode_is_foreign) {
@@ -167,7 +167,9 @@ TEST_F(Merge, says_which_episode_is_foreign) {
                 campaign.seeds, false);
     store.add(testing::example_row(1, 99), false);
   }
-  EXPECT_THAT(refusal({only}), HasSubstr("variant two: found an episode with the foreign seed 99"));
+  EXPECT_THAT(
+      refusal({only}),
+      HasSubstr("variant two: found an episode with seed 99, which is not one of the campaign's"));
 }
 
 TEST_F(Merge, takes_listed_seeds_in_any_order) {
@@ -245,14 +247,14 @@ TEST_F(MergeOfParts, takes_an_episode_that_several_have_once_and_from_the_first)
 }
 
 TEST_F(MergeOfParts, refuses_episodes_that_contradict_each_other) {
-  EXPECT_THAT(
-      refusal_of_parts({part({5, 6}), part({6, 7}, 1e-9), part({8})}, {.duplicates = true}),
-      HasSubstr("variant three, seed 6: found another episode than a folder before it has"));
+  EXPECT_THAT(refusal_of_parts({part({5, 6}), part({6, 7}, 1e-9), part({8})}, {.duplicates = true}),
+              HasSubstr("variant three, seed 6: found a row of table episode that differs from "
+                        "that of an earlier folder"));
 }
 
 TEST_F(MergeOfParts, says_which_episode_is_double_or_missing_unless_that_is_allowed) {
   EXPECT_THAT(refusal_of_parts({part({5, 6}), part({6, 7, 8})}, {}),
-              HasSubstr("seed 6, which another shard has, too"));
+              HasSubstr("seed 6, which another shard also has"));
   EXPECT_THAT(refusal_of_parts({part({5, 6}), part({6, 8})}, {.duplicates = true}),
               HasSubstr("found no episode with seed 7"));
   const MergeResult merged =
@@ -264,7 +266,7 @@ TEST_F(MergeOfParts, says_which_episode_is_double_or_missing_unless_that_is_allo
 TEST_F(MergeOfParts, refuses_foreign_seeds_also_where_episodes_may_be_missing) {
   for (const std::uint64_t foreign : {4U, 9U}) {
     EXPECT_THAT(refusal_of_parts({part({5, foreign})}, {.incomplete = true}),
-                HasSubstr(fmt::format("the foreign seed {}", foreign)));
+                HasSubstr(fmt::format("seed {}, which is not one of the campaign's", foreign)));
   }
 }
 

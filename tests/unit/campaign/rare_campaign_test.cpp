@@ -152,7 +152,7 @@ TEST(RareCampaign, says_what_it_found_in_table_numbers_page_and_figure) {
   EXPECT_EQ(json["unsafe"]["interval"][1], rare.interval.upper);
   EXPECT_EQ(json["worth"]["gain"], rare.gain());
   EXPECT_EQ(json["runs"].size(), 4U);
-  EXPECT_THAT(campaign_table(statistics), HasSubstr("How probable an unsafe drive is"));
+  EXPECT_THAT(campaign_table(statistics), HasSubstr("Probability of an unsafe drive"));
   EXPECT_THAT(campaign_page(statistics, {}), HasSubstr("Rare outcomes"));
   EXPECT_EQ(campaign_figures(statistics).back().file, kRareFile);
 }

@@ -44,7 +44,7 @@ TEST_F(StoreFileTest, refuses_the_file_of_another_program) {
     SQLite::Database(path(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
         .exec("CREATE TABLE t (x)");
   }
-  EXPECT_THAT(refusal(testing::quick_campaign()), HasSubstr("an SQLite file of another program"));
+  EXPECT_THAT(refusal(testing::quick_campaign()), HasSubstr("an SQLite file from another program"));
   EXPECT_THROW(StoreReader(folder.path()), InputError);
 }
 

@@ -51,7 +51,7 @@ TEST(StorePaths, gives_back_the_paths_of_failures_before_others_and_of_no_more_t
     ADD_FAILURE() << "a path of one number was read";
   } catch (const IoError& error) {
     EXPECT_EQ(error.what(),
-              folder.path() + "/" + kStoreFile + ": damaged: a path that is no list of points");
+              folder.path() + "/" + kStoreFile + ": damaged: a path that is not a list of points");
   }
 }
 

@@ -71,7 +71,7 @@ TEST(VariantFamilies, a_variant_that_is_not_there_is_refused_with_what_is) {
                  {.line = 3,
                   .key = "figure.risk_against_cost.all.0",
                   .found = "base",
-                  .expected = "variants or a grid"});
+                  .expected = "no variants or grid"});
 }
 
 TEST(VariantFamilies, of_very_many_variants_some_are_told) {

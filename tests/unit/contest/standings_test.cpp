@@ -166,10 +166,9 @@ TEST_F(Standings, are_told_in_words_that_the_numbers_bear_out) {
       "Less safe than careful: 30 % of its drives unsafe against 0 % (p < 0.001); arrives less "
       "often (70 % against 100 %, p < 0.001); where both arrive, cheaper (−10 % [−10, −10]); no "
       "estimate of its risk. Wins–ties–losses of 2: safety 0–0–2, arrival 0–0–2, cost 2–0–0.");
-  EXPECT_EQ(
-      words_about(all, 0),
-      "The reference: 100 % of its drives arrive, 0 % [0, 12.4] are unsafe; expects more than "
-      "happens (believed in 0.25 unsafe periods a drive).");
+  EXPECT_EQ(words_about(all, 0),
+            "The reference: 100 % of its drives arrive, 0 % [0, 12.4] are unsafe; overestimates "
+            "its risk (expected 0.25 unsafe periods per drive).");
 }
 
 TEST_F(Standings, that_differ_by_chance_are_told_as_ties) {
@@ -181,9 +180,10 @@ TEST_F(Standings, that_differ_by_chance_are_told_as_ties) {
   all.overall[1].believed = {.drives = 80, .mean = 0.001};
   EXPECT_THAT(
       words_about(all, 1),
-      HasSubstr("Not told apart from careful in safety by these drives: 30 % of its drives unsafe "
-                "against 0 % (p = 0.5); where both arrive, no different in cost (−10 % [−20, "
-                "5]); too sure of itself (believed in 0.001 unsafe periods a drive)."));
+      HasSubstr("No significant difference in safety from careful in these drives: 30 % of its "
+                "drives unsafe against 0 % (p = 0.5); where both arrive, no significant difference "
+                "in cost (−10 % [−20, 5]); underestimates its risk (expected 0.001 unsafe periods "
+                "per drive)."));
   versus.cost.pairs = 3;
   EXPECT_THAT(words_about(all, 1), HasSubstr("; too few drives on which both arrive"));
 }

@@ -174,7 +174,7 @@ TEST_F(Answers, that_are_wrong_are_refused_with_what_was_found) {
   EXPECT_THAT(refusal(R"({"input": [1, null]})"), HasSubstr("input [1,null]; 2 finite numbers"));
   EXPECT_EQ(refusal(R"({"input": [0, 1.5]})"),
             "input with b = 1.5, out of its bounds; b from -1 to 1");
-  EXPECT_THAT(refusal(R"({"input": [0, 0], "period": 2})"), HasSubstr("an answer to period 2"));
+  EXPECT_THAT(refusal(R"({"input": [0, 0], "period": 2})"), HasSubstr("an answer for period 2"));
   EXPECT_THAT(refusal(R"({"input": [0, 0], "error": "lost"})"), HasSubstr("its error: lost"));
   EXPECT_THAT(refusal(R"({"input": [0, 0]})", 2),
               HasSubstr("the answer {\"input\":[0,0]}; {\"plan\""));

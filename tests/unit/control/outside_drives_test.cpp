@@ -59,7 +59,7 @@ TEST_P(OutsideControllers, that_fail_end_the_drive_with_a_reason_and_the_trace_s
     std::string reason;
   };
   const std::vector<Failure> failures = {{"crash", "signal 11 (Segmentation fault)"},
-                                         {"exit", "its end with exit code 7"},
+                                         {"exit", "an exit with code 7"},
                                          {"hang", "no answer within 3 s"},
                                          {"nan", "input"},
                                          {"inf", "input"},

@@ -38,10 +38,10 @@ TEST(OutsideProcess, what_its_answers_may_not_be_is_said_with_what_was_found) {
       {"list", "found the answer [0.0]"},
       {"other", "found the answer {\"output\":[0.0]}"},
       {"word", "found input [\"0\"], expected 1 finite numbers"},
-      {"period", "found an answer to period 1, expected one to period 2"},
+      {"period", "found an answer for period 1, expected one for period 2"},
       {"silence", "found an answer that is not JSON: "},
       {"long", "found a line of more than 16777216 bytes"},
-      {"half", "found its end with exit code 0"}};
+      {"half", "found an exit with code 0"}};
   for (const auto& [mode, reason] : modes) {
     SCOPED_TRACE(mode);
     const Trace trace = failed(mode);
@@ -54,7 +54,7 @@ TEST(OutsideProcess, what_its_answers_may_not_be_is_said_with_what_was_found) {
 
 TEST(OutsideProcess, answers_that_nothing_had_asked_for_end_the_drive) {
   const Trace twice = failed("twice");
-  EXPECT_THAT(twice.fault, HasSubstr("an answer that nothing had asked for"));
+  EXPECT_THAT(twice.fault, HasSubstr("an unrequested answer"));
   EXPECT_EQ(twice.steps.size(), 3U);
   // Reported before the first period if it has arrived by then, else instead of a later answer.
   const Trace early = failed("early");
@@ -76,7 +76,8 @@ TEST(OutsideProcess, that_does_not_begin_is_a_fault_of_the_controller) {
               HasSubstr("its start: found no answer within 1 s"));
   Scenario gone = outside_scenario(OutsideKind::kExternal);
   gone.controller.outside.command = {"./no_such_program"};
-  EXPECT_THAT(run_episode(gone, {}).fault, HasSubstr("no process: No such file or directory"));
+  EXPECT_THAT(run_episode(gone, {}).fault,
+              HasSubstr("a process that cannot be started: No such file or directory"));
   gone.controller.outside.folder = "/no/such/folder";
   EXPECT_THAT(run_episode(gone, {}).fault, HasSubstr("No such file or directory"));
 }
@@ -92,11 +93,12 @@ TEST(OutsideProcess, of_a_library_that_does_not_begin_says_why) {
   std::string& library = scenario.controller.outside.library;
   library = library_file("other_version");
   EXPECT_THAT(run_episode(scenario, {}).fault,
-              HasSubstr("has version 2 of the controller interface, this program version 1"));
+              HasSubstr("has version 2 of the controller interface; this program has version 1"));
   library = data_folder() + "/responder.py";
   EXPECT_THAT(run_episode(scenario, {}).fault, HasSubstr("its error: "));
   library = "libm.so.6";
-  EXPECT_THAT(run_episode(scenario, {}).fault, HasSubstr("exports no function qsmpc_controller"));
+  EXPECT_THAT(run_episode(scenario, {}).fault,
+              HasSubstr("does not export the function qsmpc_controller"));
 }
 
 TEST(OutsideProcess, has_its_standard_error_in_the_log_and_its_last_line_in_the_reason) {

@@ -41,13 +41,14 @@ TEST(Diagnosis, a_hold_ten_times_too_slow_is_told_with_numbers) {
   EXPECT_THAT(
       plant_warnings(robot(1.25, 2.25)),
       Contains(AllOf(HasSubstr("without an input, x changes by 0.064 m in 0.8 s"),
-                     HasSubstr("0.64 m in the model"), HasSubstr("0.0999 of the model's"))));
+                     HasSubstr("0.64 m in the model"), HasSubstr("0.0999 times the model's"))));
 }
 
 TEST(Diagnosis, a_vehicle_that_tips_over_while_it_settles_is_told) {
-  EXPECT_THAT(plant_warnings(load_scenario(kRobot, {"model.speed=3"})),
-              Contains(HasSubstr("the vehicle tips over while it settles: where drives begin it is "
-                                 "tilted by ")));
+  EXPECT_THAT(
+      plant_warnings(load_scenario(kRobot, {"model.speed=3"})),
+      Contains(HasSubstr(
+          "the vehicle tips over while settling: at the start of a drive it is tilted by ")));
 }
 
 TEST(Diagnosis, an_input_of_the_wrong_sign_is_told_although_the_noise_is_large) {
@@ -81,8 +82,8 @@ TEST(Diagnosis, a_mismatch_of_several_deviations_of_the_noise_is_told) {
     const std::vector<std::string> told = answer_warnings(scenario, answers);
     warnings.push_back(told.size());
     if (!told.empty()) {
-      EXPECT_THAT(told.front(),
-                  AllOf(HasSubstr("up to 0.055 m a period apart"), HasSubstr("noise is 0.01 m")));
+      EXPECT_THAT(told.front(), AllOf(HasSubstr("differ by up to 0.055 m per period"),
+                                      HasSubstr("noise is 0.01 m")));
     }
   }
   EXPECT_THAT(warnings, ElementsAre(1U, 0U));

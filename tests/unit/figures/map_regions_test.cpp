@@ -119,12 +119,12 @@ TEST(MapFigure, a_moving_obstacle_is_a_way_and_outlines_and_has_no_part_in_the_a
   EXPECT_EQ(occurrences(svg, "class=\"mover c0\""), 1);
   // Each once in the legend.
   EXPECT_EQ(occurrences(html, "moving obstacle at the start</li>"), 1);
-  EXPECT_EQ(occurrences(html, "moving obstacle when the vehicle was nearest to it</li>"), 1);
+  EXPECT_EQ(occurrences(html, "moving obstacle when closest to the vehicle</li>"), 1);
   EXPECT_TRUE(contains(svg_figure({map}), ".mover{fill"));
   EXPECT_FALSE(contains(svg_figure({square_map()}), ".mover{fill"));
   PlaneMap still = map;
   still.movers = {{.start = {disc(2, 1, 0.5)}}};
-  EXPECT_FALSE(contains(map_figure(still), "nearest to it"));
+  EXPECT_FALSE(contains(map_figure(still), "closest to the vehicle"));
   map.area.reset();
   const MapRectangle area = map_area(map);
   map.movers.front().way.push_back({300, 300});

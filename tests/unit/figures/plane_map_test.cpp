@@ -73,8 +73,9 @@ TEST(MapFigure, has_title_note_labels_legend_and_every_sign) {
   EXPECT_EQ(testing::tag_problem(html), "");
   for (const char* text :
        {">Map<", "A note.", ">x (m)<", ">y (m)<", "driven", "samples", "belief", "density",
-        "target", "obstacle", "obstacle for some of the other states", "outside of the bounds",
-        "start", "1 s", "Ellipses hold 50 and 95 %.", "Lines of equal density hold 50 %."}) {
+        "target", "obstacle", "obstacle for some values of the other states",
+        "outside of the bounds", "start", "1 s", "Ellipses hold 50 and 95 %.",
+        "Lines of equal density hold 50 %."}) {
     EXPECT_TRUE(testing::contains(html, text)) << text;
   }
   for (const char* sign :

@@ -129,7 +129,7 @@ TEST(gl_library, a_second_library_in_a_process_is_refused) {
   const Child child = run_child("--use osmesa egl");
   EXPECT_NE(child.status, 0);
   EXPECT_THAT(child.output, HasSubstr("egl was asked for"));
-  EXPECT_THAT(child.output, HasSubstr("osmesa is loaded already"));
+  EXPECT_THAT(child.output, HasSubstr("osmesa is already loaded"));
   EXPECT_EQ(run_child("--use egl egl").status, 0);
   EXPECT_EQ(run_child("--use egl auto").status, 0);
 }
@@ -160,7 +160,7 @@ TEST(gl_library, unknown_names_are_refused_with_the_known_ones) {
     use_gl("vulkan");
     FAIL() << "it was loaded";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), HasSubstr("\"vulkan\" is none of auto, osmesa, egl"));
+    EXPECT_THAT(error.what(), HasSubstr("\"vulkan\" is not one of auto, osmesa, egl"));
   }
 }
 

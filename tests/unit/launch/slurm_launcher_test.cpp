@@ -92,7 +92,7 @@ TEST_F(SlurmLauncherWithFakes, joins_what_slurm_knows_with_what_tasks_left) {
           TaskState{.task = 4, .condition = TaskCondition::kDone},
           TaskState{.task = 5,
                     .condition = TaskCondition::kLost,
-                    .note = "Slurm does not know job 17_5 any more, and it left no word"}));
+                    .note = "Slurm no longer knows job 17_5, and it left no record of its end"}));
   EXPECT_THAT(fakes.calls(), HasSubstr("--jobs 17 "));
 }
 

@@ -246,7 +246,7 @@ TEST_F(WrittenComparison, json_has_the_promised_keys) {
 
 TEST_F(WrittenComparison, table_fits_a_terminal_and_names_every_plant) {
   const std::string table = comparison_table(comparison_);
-  EXPECT_THAT(table, HasSubstr("analytic: the model, but for rounding"));
+  EXPECT_THAT(table, HasSubstr("analytic: matches the model except for rounding"));
   EXPECT_THAT(table, HasSubstr("mujoco_car"));
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 96U) << line;

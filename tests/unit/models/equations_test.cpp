@@ -220,12 +220,12 @@ INSTANTIATE_TEST_SUITE_P(
         WrongSystem{"syntax", [](auto& s) { s.equations[0].text = "a + * u"; }, "equations", "a",
                     "'*' in column 5", "a number, a name or '('"},
         WrongSystem{"missing_equation", [](auto& s) { s.equations.clear(); }, "equations", "a",
-                    "nothing", "the equation of this state"},
+                    "nothing", "an equation for this state"},
         WrongSystem{"equation_of_no_state",
                     [](auto& s) {
                       s.equations.push_back({"b", "a"});
                     },
-                    "equations", "b", "an equation of 'b'", "one of a"},
+                    "equations", "b", "an equation for 'b'", "one of a"},
         WrongSystem{"name_of_a_function", [](auto& s) { s.states[0].name = "sin"; }, "states",
                     "sin", "'sin', which is a function", "another name"},
         WrongSystem{"name_of_the_period", [](auto& s) { s.inputs[0].name = "time_step"; }, "inputs",
@@ -240,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(
                       define(s, "c", "b * 2");
                       s.equations[0].text = "a + b";
                     },
-                    "define", "b", "a definition by itself: b, c, b", "circle"},
+                    "define", "b", "a circular definition: b, c, b", "circular"},
         WrongSystem{"unused_and_wrong", [](auto& s) { define(s, "b", "zzz"); }, "define", "b",
                     "'zzz' in column 1", "one of a, b, p"},
         WrongSystem{"no_states", [](auto& s) { s.states.clear(); }, "states", "", "none", "one"},

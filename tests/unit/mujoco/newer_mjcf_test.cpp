@@ -42,24 +42,25 @@ InputError::Where refusal(const Model& model) {
 TEST(NewerMjcf, names_the_version_of_a_value_and_what_to_write_instead) {
   const auto where = refusal({.option = "integrator=\"implicitfast\""});
   EXPECT_THAT(where.found, HasSubstr("implicitfast"));
-  EXPECT_THAT(where.expected,
-              AllOf(HasSubstr("MuJoCo " + mujoco_version()),
-                    HasSubstr("implicitfast came with 2.3.3"), HasSubstr("write implicit")));
+  EXPECT_THAT(where.expected, AllOf(HasSubstr("MuJoCo " + mujoco_version()),
+                                    HasSubstr("implicitfast was introduced in 2.3.3"),
+                                    HasSubstr("write implicit")));
 }
 
 TEST(NewerMjcf, names_the_version_of_an_attribute) {
-  EXPECT_THAT(refusal({.joint = "actuatorfrcrange=\"-1 1\""}).expected,
-              AllOf(HasSubstr("actuatorfrcrange came with 3.0.0"), HasSubstr("forcerange")));
+  EXPECT_THAT(
+      refusal({.joint = "actuatorfrcrange=\"-1 1\""}).expected,
+      AllOf(HasSubstr("actuatorfrcrange was introduced in 3.0.0"), HasSubstr("forcerange")));
   EXPECT_THAT(
       refusal({.rest = "<actuator><position joint=\"slide\" kv=\"2\"/></actuator>"}).expected,
-      AllOf(HasSubstr("kv came with 3.1.0"), HasSubstr("damping at the joint")));
+      AllOf(HasSubstr("kv was introduced in 3.1.0"), HasSubstr("damping at the joint")));
 }
 
 TEST(NewerMjcf, names_the_version_of_an_element) {
-  EXPECT_THAT(
-      refusal({.rest = "<sensor><jointactuatorfrc joint=\"slide\"/></sensor>"}).expected,
-      AllOf(HasSubstr("jointactuatorfrc came with 2.3.7"), HasSubstr("actuatorfrc sensor")));
-  EXPECT_THAT(refusal({.world = "<frame/>"}).expected, HasSubstr("frame came with 3.1.0"));
+  EXPECT_THAT(refusal({.rest = "<sensor><jointactuatorfrc joint=\"slide\"/></sensor>"}).expected,
+              AllOf(HasSubstr("jointactuatorfrc was introduced in 2.3.7"),
+                    HasSubstr("actuatorfrc sensor")));
+  EXPECT_THAT(refusal({.world = "<frame/>"}).expected, HasSubstr("frame was introduced in 3.1.0"));
 }
 
 TEST(NewerMjcf, says_that_a_range_alone_does_not_limit_yet) {
@@ -69,7 +70,7 @@ TEST(NewerMjcf, says_that_a_range_alone_does_not_limit_yet) {
 
 TEST(NewerMjcf, a_misspelt_name_is_of_no_version) {
   EXPECT_THAT(refusal({.joint = "dampling=\"1\""}).expected,
-              AllOf(HasSubstr("MuJoCo " + mujoco_version()), Not(HasSubstr("came with"))));
+              AllOf(HasSubstr("MuJoCo " + mujoco_version()), Not(HasSubstr("was introduced in"))));
 }
 
 }  // namespace newer_mjcf_test

@@ -157,7 +157,8 @@ TEST(FeedbackLoop, refuses_what_it_cannot_hold) {
   EXPECT_THAT(refusal("", "{gain: 600}").expected, HasSubstr("a longer `settling`"));
   Vehicle sideways = kPusher;
   sideways.speed = "{body: agent, quantity: lateral_speed}";
-  EXPECT_THAT(refusal("", "{gain: 1}", sideways).expected, HasSubstr("move what it holds"));
+  EXPECT_THAT(refusal("", "{gain: 1}", sideways).expected,
+              HasSubstr("the velocity that the loop holds"));
 }
 
 }  // namespace feedback_loop_test

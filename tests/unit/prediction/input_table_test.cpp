@@ -105,11 +105,11 @@ INSTANTIATE_TEST_SUITE_P(
                "in.csv:1: column 2: found accelration, expected a number, or the name of an input: "
                "acceleration (known: steering, acceleration)"},
         Broken{"name_twice", "steering,steering\n0,0\n",
-               "in.csv:1: column 2: found steering once more, expected every input once"},
+               "in.csv:1: column 2: found steering a second time, expected each input once"},
         Broken{"second_header", "steering,acceleration\nsteering,acceleration\n",
                "in.csv:2: column 1 (steering): found steering, expected a finite number"},
         Broken{"too_many_rows", many_rows(),
-               "in.csv:1001: found more than 1000 rows, expected one row a stage, no more"},
+               "in.csv:1001: found more than 1000 rows, expected one row per stage, no more"},
         Broken{"binary", std::string("0,0\n\0\x01,0\n", 9),
                "in.csv:2: found the control character 0x00, expected a CSV file in UTF-8"}),
     [](const auto& tested) { return std::string(tested.param.name); });
@@ -119,7 +119,7 @@ TEST(InputTable, fewer_rows_than_stages_are_refused) {
     static_cast<void>(table("0,0\n0,0\n", 3));
     FAIL() << "no error";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "in.csv: found 2 rows, expected at least 3, one a stage");
+    EXPECT_STREQ(error.what(), "in.csv: found 2 rows, expected at least 3, one per stage");
   }
 }
 

@@ -92,15 +92,15 @@ TEST(ReliabilityFigure, says_where_certificates_are_no_bounds_and_calls_none_of_
   EXPECT_FALSE(testing::contains(charts[2].note, "reason"));
   EXPECT_EQ(charts[3].title, "1: often <b>: NO BOUND");
   EXPECT_TRUE(testing::contains(charts[3].note, "No bound: for a reason."));
-  EXPECT_NE(series_of(charts[3], "certificate, no bound"), nullptr);
-  EXPECT_EQ(series_of(charts[3], "certificate, no bound: exceeded"), nullptr);
+  EXPECT_NE(series_of(charts[3], "certificate, not a bound"), nullptr);
+  EXPECT_EQ(series_of(charts[3], "certificate, not a bound: exceeded"), nullptr);
   EXPECT_NE(series_of(charts[0], "certificate: exceeded"), nullptr) << "some are bounds";
 
   statistics.variants[0].no_bound = "for a reason";
   charts = campaign_figures(statistics)[1].charts;
-  EXPECT_TRUE(testing::contains(charts[0].note, "no bounds here. No bound: for a reason."));
+  EXPECT_TRUE(testing::contains(charts[0].note, "not bounds here. No bound: for a reason."));
   EXPECT_EQ(series_of(charts[0], "certificate: exceeded"), nullptr);
-  EXPECT_TRUE(testing::contains(campaign_page(statistics), "Certificates: no bounds here"));
+  EXPECT_TRUE(testing::contains(campaign_page(statistics), "Certificates: not bounds here"));
 }
 
 TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_at_zero_below_what_is_shaded) {
@@ -112,11 +112,12 @@ TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_at_zero_belo
   EXPECT_LT(exceeded->lower[0], 0.1);
   EXPECT_GT(exceeded->upper[0], 0.1);
   EXPECT_EQ(series_of(chart, "certificate"), nullptr);
-  const Series* published = series_of(chart, "published value, no bound");
+  const Series* published = series_of(chart, "published value, not a bound");
   ASSERT_NE(published, nullptr);
   EXPECT_EQ(published->x.size(), 1U);
-  EXPECT_EQ(series_of(chart, "published value, no bound: exceeded"), nullptr);
-  for (const char* name : {"certificate: none unsafe", "published value, no bound: none unsafe"}) {
+  EXPECT_EQ(series_of(chart, "published value, not a bound: exceeded"), nullptr);
+  for (const char* name :
+       {"certificate: none unsafe", "published value, not a bound: none unsafe"}) {
     const Series* unseen = series_of(chart, name);
     ASSERT_NE(unseen, nullptr) << name;
     EXPECT_EQ(unseen->y, std::vector<double>{0.0});
@@ -157,7 +158,7 @@ TEST(ReliabilityFigure, says_which_of_many_variants_have_a_chart) {
   for (std::size_t n = 0; n < 40; ++n) statistics.variants[n].id = static_cast<std::int64_t>(n);
   const std::vector<Chart> charts = campaign_figures(statistics)[1].charts;
   ASSERT_EQ(charts.size(), 2U + 16U);
-  EXPECT_TRUE(testing::contains(charts[0].note, "Of 40 variants, 16 have a chart of their own"));
+  EXPECT_TRUE(testing::contains(charts[0].note, "Of 40 variants, 16 have their own chart"));
   EXPECT_TRUE(charts[2].title.starts_with("0: ")) << charts[2].title;
   EXPECT_TRUE(charts[17].title.starts_with("33: ")) << charts[17].title;
 }
@@ -185,7 +186,7 @@ TEST(CampaignPage, has_tables_and_figures_with_texts_that_are_escaped) {
   EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
   EXPECT_TRUE(testing::contains(page, "1: often &lt;b&gt;"));
   EXPECT_FALSE(testing::contains(page, "often <b>"));
-  EXPECT_TRUE(testing::contains(page, "1 less 0"));
+  EXPECT_TRUE(testing::contains(page, "1 − 0"));
   EXPECT_EQ(testing::occurrences(page, "<figure"), 4 + 2)
       << "of one pair of variants there is a table";
 }
@@ -260,7 +261,7 @@ TEST(CampaignPage, says_first_how_many_drives_were_unsafe_and_certificates_after
   EXPECT_LT(verdict, page.find("What became of the drives"));
   EXPECT_LT(page.find("What became of the drives"), page.find("Certificates of the next step"));
   EXPECT_LT(page.find("Certificates of the next step"), tick);
-  EXPECT_TRUE(testing::contains(page, "This is about the certificates alone"));
+  EXPECT_TRUE(testing::contains(page, "This concerns the certificates only"));
 }
 
 TEST(CampaignPage, has_a_bar_of_all_drives_and_the_rates_of_each_variant) {
@@ -285,7 +286,8 @@ TEST(CampaignPage, shows_the_former_word_where_a_store_has_it) {
   tally.add({.outcome = "left_safe_set", .unsafe = true});
   statistics.variants[0] = tally.result();
   const std::string page = campaign_page(statistics);
-  EXPECT_TRUE(testing::contains(page, "Left safe set: the same of drives of an earlier version"));
+  EXPECT_TRUE(
+      testing::contains(page, "Left safe set: either of the two, in drives of an earlier version"));
   EXPECT_TRUE(testing::contains(page, "<rect class=\"fill-left_safe_set\" x=\"0.000\""));
 }
 

@@ -105,7 +105,7 @@ TEST(DriveMaps, of_many_variants_are_of_those_with_the_most_unsafe_drives) {
   ASSERT_EQ(drives.maps.size(), 12U);
   EXPECT_TRUE(drives.maps[11].title.starts_with("39: "));
   EXPECT_TRUE(drives.maps[2].title.starts_with("30: "));
-  EXPECT_TRUE(contains(drives.notes.at(0), "Of 40 variants, the 12"));
+  EXPECT_TRUE(contains(drives.notes.at(0), "Of 40 variants, only the 12"));
 }
 
 TEST(Distributions, rise_from_the_least_value_to_the_greatest_without_those_of_faults) {
@@ -144,8 +144,8 @@ TEST(CampaignPage, leads_with_the_outcomes_and_the_map_and_numbers_variants_as_f
   const std::string page = campaign_page(campaign(
       {variant(4, {"reached", "collision", "reached"}), variant(7, {"reached", "reached"})}));
   EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
-  EXPECT_LT(page.find("What became of the drives"), page.find("Where they drove"));
-  EXPECT_LT(page.find("Where they drove"), page.find("Cost, clearance, time"));
+  EXPECT_LT(page.find("What became of the drives"), page.find("Driven paths"));
+  EXPECT_LT(page.find("Driven paths"), page.find("Cost, clearance, time"));
   EXPECT_LT(page.find("Cost, clearance, time"), page.find("Certificates of the next step"));
   EXPECT_TRUE(contains(page, "<figcaption>4: quick &lt;b&gt;</figcaption>"));
   EXPECT_TRUE(contains(page, "<figcaption>7: quick &lt;b&gt;</figcaption>"));

@@ -45,7 +45,7 @@ TEST(ComparisonPage, has_all_parts_and_is_well_formed) {
        {"No certificate is exceeded on any plant", "Farthest from the model: mujoco_car",
         "<h2>Closed loop</h2>", "Certificates without model error",
         "Covariance of the residual: mujoco_car",
-        "It is the model: what differs is rounding, of at most",
+        "It matches the model except for rounding, which is at most",
         "W₂ between the predicted measure and the plant", "Divergence from the model: y",
         "Numbers by stage: mujoco_car", "× real time", "every default filled in", "horizon: 3"}) {
     EXPECT_TRUE(testing::contains(page, part)) << part;
@@ -104,7 +104,7 @@ TEST(ComparisonPage, calls_the_certificates_of_drives_no_bounds_and_those_along_
   EXPECT_FALSE(testing::contains(comparison_page(comparison), "no bound"));
   comparison.scenario.disturbance.sensor = Eigen::MatrixXd::Identity(3, 3);
   const std::string page = comparison_page(comparison);
-  EXPECT_TRUE(testing::contains(page, "Certificates of the drives are no bounds"));
+  EXPECT_TRUE(testing::contains(page, "Certificates of the drives are not bounds"));
   // The sum over the periods of drives, and no table of stages.
   EXPECT_EQ(testing::occurrences(page, ">certified: no bound<"), 1U);
   EXPECT_TRUE(testing::contains(page, ">certified<"));
@@ -141,7 +141,7 @@ TEST(ComparisonVerdict, names_the_farthest_plant) {
       testing::contains(comparison_verdict(comparison).sentences[0], "broke on every path"));
   car = comparison.plants[0];
   EXPECT_EQ(comparison_verdict(comparison).sentences[0],
-            "Every plant is the model, but for rounding.");
+            "Every plant matches the model except for rounding.");
 }
 
 TEST(ComparisonVerdict, speaks_of_a_single_plant_as_one) {
@@ -149,7 +149,7 @@ TEST(ComparisonVerdict, speaks_of_a_single_plant_as_one) {
   comparison.plants.erase(comparison.plants.begin());
   const std::string page = comparison_page(comparison);
   for (const char* words :
-       {": a plant beside the model</h1>", "1 plant beside the model",
+       {": a plant compared with the model</h1>", "1 plant compared with the model",
         "✓ No certificate is exceeded<", "Under the plan the paths of mujoco_car diverge"}) {
     EXPECT_TRUE(testing::contains(page, words)) << words;
   }
@@ -160,7 +160,7 @@ TEST(ComparisonVerdict, speaks_of_a_single_plant_as_one) {
   EXPECT_EQ(comparison_verdict(comparison).title, "Certificates are exceeded");
   comparison.plants = {example().plants.front()};
   EXPECT_EQ(comparison_verdict(comparison).sentences[0],
-            "analytic is the model, but for rounding.");
+            "analytic matches the model except for rounding.");
 }
 
 TEST(ComparisonVerdict, stages_in_a_row_are_a_range) {

@@ -125,11 +125,11 @@ TEST(MovingData, of_a_page_has_a_switch_only_where_there_are_forecasts) {
   const Trace trace = met_trace();
   const std::string page = episode_page(EpisodeView(trace), {});
   EXPECT_TRUE(contains(page, "data-layer=\"forecast\""));
-  EXPECT_TRUE(contains(page, "the obstacles that move"));
+  EXPECT_TRUE(contains(page, "the moving obstacles"));
   const Trace still = testing::example_trace();
   const std::string other = episode_page(EpisodeView(still), {});
   EXPECT_FALSE(contains(other, "data-layer=\"forecast\""));
-  EXPECT_FALSE(contains(other, "the obstacles that move"));
+  EXPECT_FALSE(contains(other, "the moving obstacles"));
 }
 
 }  // namespace driven_ways_test

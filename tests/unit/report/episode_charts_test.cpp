@@ -80,7 +80,7 @@ TEST(EpisodeCharts, budgets_of_very_different_sizes_are_on_a_logarithmic_axis) {
   trace.steps.front().budgets.back().total = 2e9;
   const Chart chart = chart_of(trace, "Error budget");
   EXPECT_EQ(chart.y_scale, Scale::kLog);
-  EXPECT_TRUE(contains(chart.note, "drawn at its foot")) << chart.note;
+  EXPECT_TRUE(contains(chart.note, "drawn at the bottom")) << chart.note;
   // A value that is not finite is omitted and does not affect the scale.
   trace.steps.front().budgets.back().total = kInfinity;
   EXPECT_EQ(chart_of(trace, "Error budget").y_scale, Scale::kLinear);

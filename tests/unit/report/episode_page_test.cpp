@@ -66,8 +66,8 @@ TEST(EpisodePage, says_beside_every_certificate_that_it_is_no_bound) {
   const std::string whole = episode_page(EpisodeView(trace), {});
   const std::string page = markup_of(whole);
   EXPECT_TRUE(contains(page, "No certificate is a bound here"));
-  EXPECT_EQ(occurrences(page, "no bound: see above"), 3);  // next step, sum, plan
-  EXPECT_TRUE(contains(page, "Certificates, no bounds"));
+  EXPECT_EQ(occurrences(page, "not a bound: see above"), 3);  // next step, sum, plan
+  EXPECT_TRUE(contains(page, "Certificates, not bounds"));
   EXPECT_FALSE(contains(page, "Upper bounds"));
   EXPECT_TRUE(contains(whole, "\"holds\":false"));
   EXPECT_EQ(tag_problem(page), "");
@@ -225,7 +225,7 @@ TEST(EpisodePage, says_that_a_drive_went_on_after_its_collision) {
   trace.outcome = Outcome::kCollision;
   trace.scenario.stop_when_unsafe = false;
   const std::string page = episode_page(EpisodeView(trace), with_video());
-  EXPECT_TRUE(testing::contains(page, "The drive went on after that"));
+  EXPECT_TRUE(testing::contains(page, "The drive continued (limit"));
   EXPECT_TRUE(testing::contains(page, "and ended after 0.6 s.")) << "not at the target";
   trace.final_state = trace.scenario.target.state;
   EXPECT_TRUE(testing::contains(episode_page(EpisodeView(trace), with_video()),
@@ -243,7 +243,7 @@ TEST(EpisodePage, leaving_the_bounds_is_a_failure) {
 
 TEST(EpisodePage, says_what_a_certificate_does_not_cover) {
   const std::string page = episode_page(EpisodeView(testing::example_trace()), with_video());
-  EXPECT_TRUE(testing::contains(page, "plan as planned"));
+  EXPECT_TRUE(testing::contains(page, "holds for the plan as made"));
   EXPECT_TRUE(testing::contains(page, "Neither covers the plant’s mismatch"));
   EXPECT_TRUE(testing::contains(page, "published method, worst stage: not a bound"));
 }
@@ -274,7 +274,7 @@ TEST(EpisodePage, a_trace_without_any_state_gives_a_page) {
   trace.final_state.resize(0);
   const std::string page = episode_page(EpisodeView(trace), {});
   EXPECT_EQ(testing::tag_problem(markup_of(page)), "");
-  EXPECT_TRUE(testing::contains(page, "no state is known"));
+  EXPECT_TRUE(testing::contains(page, "no known state"));
 }
 
 TEST(EpisodePage, numbers_that_are_not_finite_do_not_break_the_drawings) {

@@ -88,7 +88,7 @@ TEST(TradeoffCharts, say_what_is_no_bound_beside_what_was_certified_alone) {
   EXPECT_EQ(testing::occurrences(section, "<strong>no bound</strong>"), 1U);
   EXPECT_TRUE(testing::contains(section, "No bound in variant 1: for a reason."));
   for (VariantStatistics& variant : statistics.variants) variant.no_bound = "for a reason";
-  EXPECT_TRUE(testing::contains(tradeoff_charts(statistics)[1].note, "NO BOUND of any variant."));
+  EXPECT_TRUE(testing::contains(tradeoff_charts(statistics)[1].note, "NO BOUND for any variant."));
 }
 
 TEST(TradeoffCharts, show_what_was_certified_beside_what_was_observed) {

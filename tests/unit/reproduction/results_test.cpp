@@ -202,9 +202,9 @@ TEST(ResultsPage, shows_rows_claims_and_figures_as_text) {
 
 TEST(ResultsPage, says_that_more_is_to_come_while_it_does) {
   Reproduction all = example();
-  EXPECT_THAT(results_page(all), Not(HasSubstr("Not all that was asked for")));
+  EXPECT_THAT(results_page(all), Not(HasSubstr("Not all of the requested experiments")));
   all.complete = false;
-  EXPECT_THAT(results_page(all), HasSubstr("Not all that was asked for"));
+  EXPECT_THAT(results_page(all), HasSubstr("Not all of the requested experiments"));
 }
 
 TEST(Machine, has_a_processor_cores_and_a_compiler) {

@@ -231,7 +231,7 @@ INSTANTIATE_TEST_SUITE_P(
                "initial_state.covariance", "the eigenvalue -2", "positive semidefinite"},
         after_minimal("asymmetric",
                       "disturbance:\n  covariance: [[1, 2, 0], [0, 1, 0], [0, 0, 1]]\n", 7,
-                      "disturbance.covariance", "mirror image", "symmetric"),
+                      "disturbance.covariance", "transposed entry", "symmetric"),
         after_minimal("indefinite",
                       "disturbance:\n  covariance: [[1, 2, 0], [2, 1, 0], [0, 0, 1]]\n", 7,
                       "disturbance.covariance", "the eigenvalue -1", "positive semidefinite"),

@@ -41,9 +41,10 @@ TEST(CertificateScope, is_warned_of) {
 }
 
 TEST(ScenarioWarnings, question_angles_that_look_like_degrees) {
-  EXPECT_THAT(scenario_warnings(minimal_with({"initial_state.mean=[0, 0, 90]"})),
-              ElementsAre("initial_state.mean: heading = 90 is more than a turn: angles are in "
-                          "radians; 90 degrees are 1.571"));
+  EXPECT_THAT(
+      scenario_warnings(minimal_with({"initial_state.mean=[0, 0, 90]"})),
+      ElementsAre("initial_state.mean: heading = 90 is more than a full turn: angles are in "
+                  "radians; 90 degrees are 1.571"));
   EXPECT_THAT(scenario_warnings(minimal_with({"target.state=[5, 0, -45]"})),
               ElementsAre(HasSubstr("target.state: heading = -45")));
   // Up to whole turns a number counts as an angle; a position of 90 m is fine.

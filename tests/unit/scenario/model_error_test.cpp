@@ -156,7 +156,7 @@ TEST(ModelErrorKey, problems_of_its_file_are_told_with_its_name_and_line) {
   EXPECT_THAT(problems[0].expected, HasSubstr("dubins"));
   EXPECT_EQ(problems[1].line, 3);
   EXPECT_EQ(problems[1].key, "norm4");
-  EXPECT_THAT(problems[1].found, HasSubstr("0.01 as number 3"));
+  EXPECT_THAT(problems[1].found, HasSubstr("0.01 at position 3"));
   // A file that is not YAML is an error like any other.
   (void)folder.file("error.yaml", "rms: [1, 2\n");
   EXPECT_EQ(validate_scenario_file(path).at(0).file, folder / "error.yaml");

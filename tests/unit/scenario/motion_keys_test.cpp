@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenMotion{"path_and_route", "{path: [[1, 2, 3]], route: [[1, 2]], speed: 1}", ".route",
                      "a list", "no route beside a path"},
         BrokenMotion{"two_at_once", "{path: [[1, 10, 9], [1, 11, 9]]}", "", "another motion",
-                     "times that ascend"},
+                     "ascending times"},
         BrokenMotion{"at_once", "{path: [[0, 10, 9]]}", "", "another motion", "the first above 0"},
         BrokenMotion{"jump", "{path: [[0.01, 19, 9]]}", "", "another motion", "must not jump"},
         BrokenMotion{"nothing", "{}", "", "an empty mapping", "a velocity or a route"},
@@ -141,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenMotion{"seen_exactly",
                      "{ways: [{probability: 0.5, velocity: [1, 0]}, "
                      "{probability: 0.5, velocity: [0, 1]}]}",
-                     "", "another motion", "what is seen above 0"}),
+                     "", "another motion", "a seen_deviation above 0"}),
     [](const auto& each) { return each.param.name; });
 
 TEST(Motions, that_answer_to_the_vehicle_leave_no_bound) {
@@ -154,7 +154,7 @@ TEST(Motions, of_a_box_of_states_are_refused) {
   const InputError::Where where =
       refusal_of(with_obstacles("    - {x: [7, 8], motion: {velocity: [1, 0]}}\n"));
   EXPECT_EQ(where.key, "safe_set.obstacles.0.motion");
-  EXPECT_THAT(where.expected, HasSubstr("only these move"));
+  EXPECT_THAT(where.expected, HasSubstr("only these can move"));
 }
 
 }  // namespace motion_keys_test

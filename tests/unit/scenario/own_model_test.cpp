@@ -145,13 +145,14 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"arity", cart_with("(force", "max(force"), 9, "model.define.pull", "max of 1",
                 "max of 2 arguments"},
         Refused{"missing", cart_with("    velocity: velocity + time_step * pull\n", ""), 10,
-                "model.equations.velocity", "nothing", "the equation of this state"},
+                "model.equations.velocity", "nothing", "an equation for this state"},
         Refused{"no_state", cart_with("    velocity: ", "    velocty: "), 12,
-                "model.equations.velocty", "an equation of 'velocty'", "velocity (known: position"},
+                "model.equations.velocty", "an equation for 'velocty'",
+                "velocity (known: position"},
         Refused{"function_name", cart_with("{pull:", "{exp: 1, pull:"), 9, "model.define.exp",
                 "which is a function", "another name"},
         Refused{"cycle", cart_with("{pull:", "{mad: mad + 1, pull:"), 9, "model.define.mad",
-                "a definition by itself: mad, mad", "circle"},
+                "a circular definition: mad, mad", "circular"},
         Refused{"no_bounds", cart_with(", bounds: [-5, 5]", ""), 7, "model.inputs.force.bounds",
                 "nothing", "[lower, upper]"},
         Refused{"input_by_unit", cart_with("{unit: N, bounds: [-5, 5]}", "N"), 7,
@@ -159,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"unknown_key", cart_with("  define:", "  defines:"), 9, "model.defines",
                 "an unknown key", "define (known:"},
         Refused{"system_of_the_program", cart + "  system: dubins\n", 13, "model.system", "dubins",
-                "a name that no system of the program has"},
+                "a name that no built-in system has"},
         Refused{"position", cart + "  position: [position, hight]\n", 13, "model.position", "hight",
                 "one of position, velocity"},
         Refused{"integrator", cart + "  integrator: euler\n", 13, "model.integrator", "euler",
@@ -192,12 +193,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "model.equations", "a mapping", "from model.library"},
         Refused{"risk_without_derivatives",
                 from_library(libraries + "/libplain_cart.so") + "risk: {plan: 0.1}\n", 7, "risk",
-                "limits of the risk", "without derivatives"}),
+                "risk limits", "no derivatives"}),
     name_of);
 
 TEST(OwnModel, of_doubles_alone_plans_by_differences_and_has_no_certificates) {
   const Scenario scenario = parse_scenario(from_library(libraries + "/libplain_cart.so"));
-  EXPECT_THAT(why_no_bound(scenario), HasSubstr("without derivatives"));
+  EXPECT_THAT(why_no_bound(scenario), HasSubstr("no derivatives"));
   const auto dynamics = make_model(scenario.model, 0.1);
   Eigen::MatrixXd by_state(2, 2);
   Eigen::MatrixXd by_input(2, 1);
@@ -210,7 +211,7 @@ TEST(OwnModel, of_doubles_alone_plans_by_differences_and_has_no_certificates) {
             std::numeric_limits<double>::infinity());
   // The recorded scenario says so as well.
   const Scenario recorded = parse_scenario(to_yaml(scenario), {.files_must_exist = false});
-  EXPECT_THAT(why_no_bound(recorded), HasSubstr("without derivatives"));
+  EXPECT_THAT(why_no_bound(recorded), HasSubstr("no derivatives"));
 }
 
 }  // namespace own_model_test

@@ -112,7 +112,7 @@ TEST(PathKeys, what_is_wrong_with_a_file_is_told_with_its_line) {
            {"0,0\n5,zero\n", 2, "5,zero", "x, y"},
            {"0,0\n5,0,1\n", 2, "5,0,1", "right width"},
            {"0,0,1,1\n5,0\n", 2, "2 numbers", "4 numbers"},
-           {"0,0\n\n0,0\n5,0\n", 3, "once more", "another point"},
+           {"0,0\n\n0,0\n5,0\n", 3, "again", "another point"},
            {"0,0,1,1\n5,0,1,0\n9,0,1,1\n", 2, "widths 1 and 0", "above 0"},
            {"0,0,1,1\n5,0,-1,1\n9,0,1,1\n", 2, "widths -1 and 1", "above 0"},
            {"# nothing\n", 0, "0 points", "at least 2"},
@@ -153,7 +153,7 @@ TEST(PathKeys, a_road_narrower_than_the_vehicle_is_told) {
                  "vehicle: {footprint: [{radius: 0.5}]}\n");
   EXPECT_EQ(where.line, 5);
   EXPECT_EQ(where.key, "target.path.2");
-  EXPECT_THAT(where.found, HasSubstr("0.7 wide"));
+  EXPECT_THAT(where.found, HasSubstr("0.7 m wide"));
   EXPECT_THAT(where.expected, HasSubstr("more than the 1 m"));
 }
 

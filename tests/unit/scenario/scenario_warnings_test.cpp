@@ -28,7 +28,7 @@ constexpr const char* kWall = "safe_set: {bounds: {x: [0, 10]}}\n";
 TEST(ScenarioWarnings, say_that_the_start_is_above_the_least_limit) {
   EXPECT_THAT(
       scenario_warnings(at_a_wall(std::string(kWall) + "risk: {plan: 0.5, stage: 0.02}\n")),
-      ElementsAre("the start is unsafe with a certified probability up to 0.0228, above the "
+      ElementsAre("the start is unsafe with a certified probability of up to 0.0228, above the "
                   "limit of 0.02"));
   EXPECT_THAT(scenario_warnings(at_a_wall(std::string(kWall) + "risk: {mission: 0.03}\n")),
               IsEmpty());

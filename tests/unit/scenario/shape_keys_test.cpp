@@ -203,7 +203,7 @@ TEST(Shapes, need_a_plane_of_position) {
   const InputError::Where where = refusal_of(rail);
   EXPECT_EQ(where.line, 6);
   EXPECT_EQ(where.key, "safe_set.obstacles.0.disc");
-  EXPECT_THAT(where.expected, HasSubstr("as the system has no position in the plane"));
+  EXPECT_THAT(where.expected, HasSubstr("because the system has no position in the plane"));
 }
 
 TEST(Shapes, do_not_go_with_the_penalty_of_the_thesis) {
@@ -211,7 +211,7 @@ TEST(Shapes, do_not_go_with_the_penalty_of_the_thesis) {
       refusal_of(every_shape + "controller:\n  penalty: {shape: thesis}\n");
   EXPECT_EQ(where.line, 15);
   EXPECT_EQ(where.key, "controller.penalty.shape");
-  EXPECT_THAT(where.expected, HasSubstr("smooth, as safe_set.obstacles.0 is no box"));
+  EXPECT_THAT(where.expected, HasSubstr("smooth, because safe_set.obstacles.0 is not a box"));
 }
 
 const std::string own_boxes =

@@ -8,10 +8,16 @@
 #include <stdexcept>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "harness/statistics/quantiles.hpp"
 
 namespace qsmpc::harness {
 namespace rank_selection_test {
+
+using ::testing::NanSensitiveDoubleEq;
+using ::testing::Pointwise;
 
 /// Counts how often it is read.
 struct CountedStream {
@@ -85,7 +91,28 @@ TEST(RankSelection, a_distribution_is_the_same_whether_its_values_are_kept_or_no
   EXPECT_EQ(kept.p95, selected.p95);
   EXPECT_EQ(kept.p99, selected.p99);
   EXPECT_EQ(kept.max, selected.max);
-  EXPECT_NEAR(kept.mean, selected.mean, 1e-12);  // summed in a different order
+  EXPECT_EQ(kept.mean, selected.mean);
+}
+
+TEST(KeptValues, of_any_number_have_the_distribution_of_the_sorted_ones) {
+  for (std::int64_t count = 0; count <= 130; ++count) {
+    KeptValues kept;
+    std::vector<double> sorted;
+    for (std::int64_t i = 0; i < count; ++i) {
+      sorted.push_back(static_cast<double>(i * 37 % 41));  // some are equal
+      kept.add(sorted.back());
+    }
+    std::ranges::sort(sorted);
+    SortedDistribution expected(count);
+    for (const double value : sorted) expected.add(value);
+    const Distribution found = kept.distribution({});
+    EXPECT_THAT((std::vector{found.median, found.p95, found.p99, found.max, found.mean}),
+                Pointwise(NanSensitiveDoubleEq(),
+                          std::vector{expected.result().median, expected.result().p95,
+                                      expected.result().p99, expected.result().max,
+                                      expected.result().mean}))
+        << count << " values";
+  }
 }
 
 }  // namespace rank_selection_test

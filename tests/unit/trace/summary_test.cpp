@@ -61,7 +61,8 @@ TEST(Summary, says_whether_its_certificates_are_bounds) {
   const auto json = nlohmann::json::parse(summary_json(EpisodeView(trace)));
   EXPECT_EQ(json["certificate"]["holds"], false);
   EXPECT_EQ(json["certificate"]["reason"],
-            "with measurement noise (disturbance.sensor) the feedback acts on what is seen");
+            "with measurement noise (disturbance.sensor), the feedback acts on what is observed, "
+            "not on the true state");
 }
 
 TEST(Summary, counts_periods_of_touching_that_follow_each_other_once) {

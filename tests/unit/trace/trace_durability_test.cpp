@@ -140,9 +140,9 @@ TEST_F(TraceDurability, files_that_are_no_traces_are_refused_by_name) {
   EXPECT_THAT(refusal(path("missing.h5")), HasSubstr("missing.h5: found no file"));
   EXPECT_THAT(refusal(folder_.path()), HasSubstr("found a folder"));
   write_bytes(path("text.h5"), "name: dubins\n");
-  EXPECT_THAT(refusal(path("text.h5")), HasSubstr("found no HDF5 file"));
+  EXPECT_THAT(refusal(path("text.h5")), HasSubstr("found a file that is not HDF5"));
   write_bytes(path("empty.h5"), "");
-  EXPECT_THAT(refusal(path("empty.h5")), HasSubstr("found no HDF5 file"));
+  EXPECT_THAT(refusal(path("empty.h5")), HasSubstr("found a file that is not HDF5"));
   {
     Hdf5File foreign = Hdf5File::create(path("foreign.h5"));
     foreign.create_dataset({.path = "/measurements", .axes = {"i"}, .units = {"V"}});
@@ -178,7 +178,7 @@ TEST_F(TraceDurability, a_damaged_partial_file_is_refused_at_once) {
   constexpr std::size_t kRootAddress = 36;  // in the superblock, which is protected by a checksum
   damaged[kRootAddress] = static_cast<char>(damaged[kRootAddress] ^ 0x55);
   write_bytes(path("killed.h5"), damaged);
-  EXPECT_THAT(refusal(path("killed.h5")), HasSubstr("a trace that is not damaged"));
+  EXPECT_THAT(refusal(path("killed.h5")), HasSubstr("an undamaged trace"));
 }
 
 TEST_F(TraceDurability, a_damaged_trace_is_read_or_refused_and_never_anything_else) {

@@ -27,10 +27,10 @@ class PrintedBoundsTerm final : public StageTerm {
 class PrintedObstacleTerm final : public StageTerm {
  public:
   explicit PrintedObstacleTerm(const HorizonCostTerms& terms) : penalty_(terms.penalty) {
-    if (terms.safe_set.road) throw std::invalid_argument("penalties as printed know no road");
+    if (terms.safe_set.road) throw std::invalid_argument("printed penalties do not support a road");
     for (const Obstacle& obstacle : terms.safe_set.obstacles) {
       if (obstacle.box() == nullptr) {
-        throw std::invalid_argument("penalties as printed are for boxes");
+        throw std::invalid_argument("printed penalties support only boxes");
       }
       obstacles_.push_back(bounded_axes(*obstacle.box()));
     }
