@@ -287,8 +287,8 @@ void ChancePlanner::search(const Gaussian& belief, bool warm, Clock::time_point 
     }
   }
   plan_.violation = violation_at(z_);
-  const bool ended = plan_.status != SolverStatus::kDeadline &&
-                     plan_.status != SolverStatus::kNumericalTrouble;
+  const bool ended =
+      plan_.status != SolverStatus::kDeadline && plan_.status != SolverStatus::kNumericalTrouble;
   if (ended && plan_.violation > 0.0) plan_.status = SolverStatus::kInfeasible;
 }
 

@@ -70,7 +70,8 @@ std::shared_ptr<const controller::RoadWalls> road_of(const TargetPath& path,
     return nullptr;
   }
   if (const auto folded = controller::folded_edge(*course.path, widths)) {
-    note(folded->point, fmt::format("a width of {:.3g} m on the inner side of a bend", folded->width),
+    note(folded->point,
+         fmt::format("a width of {:.3g} m on the inner side of a bend", folded->width),
          fmt::format("less than the bend's radius, {:.3g} m", folded->radius));
     return nullptr;
   }
