@@ -2,11 +2,11 @@
 // statistics unnoticed.
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 
 // NOLINTNEXTLINE(readability-identifier-naming): the name that its library gives it
 namespace SQLite {
@@ -38,7 +38,9 @@ struct StoredEpisode {
   std::int64_t variant = 0;
   std::int64_t seed = 0;
 
-  friend auto operator<=>(const StoredEpisode&, const StoredEpisode&) = default;
+  friend bool operator<(const StoredEpisode& a, const StoredEpisode& b) {
+    return std::tie(a.variant, a.seed) < std::tie(b.variant, b.seed);
+  }
 };
 
 /// The first episode of the store at `path` whose rows do not match its checksum or are missing, in
