@@ -13,7 +13,7 @@ namespace qsmpc::harness {
 /// the function in the same order.
 using ValueStream = std::function<void(const std::function<void(double)>&)>;
 
-/// A stream of up to this many values is kept and sorted; longer ones are read several times.
+/// A stream of up to this many values is kept; longer ones are read several times.
 inline constexpr std::int64_t kMostSortedValues = std::int64_t{1} << 25U;
 
 /// The values at `ranks` (1 … count) of a stream of `count` values. The stream is read at most five
@@ -23,7 +23,7 @@ inline constexpr std::int64_t kMostSortedValues = std::int64_t{1} << 25U;
                                                   const std::vector<std::int64_t>& ranks,
                                                   std::int64_t most_kept = kMostSortedValues);
 
-/// The values of a stream, kept as long as they are few enough to be sorted.
+/// The values of a stream, kept as long as they are few enough.
 class KeptValues {
  public:
   explicit KeptValues(std::int64_t most_kept = kMostSortedValues) : most_kept_(most_kept) {}
