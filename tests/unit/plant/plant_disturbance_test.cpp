@@ -18,7 +18,7 @@ namespace plant_disturbance_test {
 /// Number of periods: a disturbance by force is found by shooting, with several simulations per
 /// period. The limits below depend on this number.
 int periods_of(bool force) {
-  return force ? testing::by_effort(100, 300, 2000) : testing::by_effort(500, 1500, 2000);
+  return force ? testing::by_effort(100, 150, 2000) : testing::by_effort(500, 750, 2000);
 }
 
 struct Disturbed {
