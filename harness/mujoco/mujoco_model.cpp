@@ -7,6 +7,7 @@
 #include <fstream>
 #include <mutex>
 #include <regex>
+#include <system_error>
 #include <vector>
 
 #include <boost/crc.hpp>
@@ -53,7 +54,11 @@ struct XmlSource {
 /// `path`: the file name in errors.
 MujocoModelPtr load_xml(const std::string& path, const XmlSource& source) {
   if (!std::ifstream(path).good()) {
-    throw InputError({.file = path, .found = "no readable file", .expected = expected_model()});
+    std::error_code ignored;
+    const bool is_there = std::filesystem::exists(path, ignored);
+    throw InputError({.file = path,
+                      .found = is_there ? "a file that cannot be read" : "no such file",
+                      .expected = expected_model()});
   }
   // The loader calls srand(), which is not thread-safe.
   static std::mutex mutex;

@@ -96,6 +96,7 @@ Chart chart_of(const Case& turn) {
   add("C2", kOrange, certificate("c2"));
   add("C3", kPurple, certificate("c3"));
   add("C4", kBlue, certificate("c4"));
+  add("C5", kInk, certificate("c5"));
   return chart;
 }
 

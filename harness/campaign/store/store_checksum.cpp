@@ -78,10 +78,6 @@ void add_real(double value, Hash& hash) {
 /// Successive seeds that one thread checks, since neighbours are on the same pages.
 constexpr std::uint64_t kBlock = 64;
 
-SQLite::Database open_to_read(const std::string& path) {
-  return {path, SQLite::OPEN_READONLY | SQLite::OPEN_NOMUTEX, kStorePatience};
-}
-
 /// The first damaged episode that any thread has found.
 class Damage {
  public:
@@ -110,7 +106,7 @@ class Damage {
 /// keys, so that it is the same for all threads even while a campaign adds to the store.
 void find_damage(const std::string& path, std::uint64_t worker, std::uint64_t workers,
                  Damage& damage) {
-  SQLite::Database database = open_to_read(path);
+  SQLite::Database database = open_store_to_read(path);
   EpisodeChecksums checksums(database);
   SQLite::Statement statement(
       database, "SELECT variant, seed, checksum FROM episode_checksum ORDER BY variant, seed");
@@ -219,7 +215,7 @@ std::int64_t EpisodeChecksums::of(std::int64_t variant, std::int64_t seed) {
 }
 
 std::optional<StoredEpisode> damaged_episode(const std::string& path, int threads) {
-  const int count = open_to_read(path).execAndGet("SELECT count(*) FROM episode_checksum").getInt();
+  const int count = open_store_to_read(path).execAndGet("SELECT count(*) FROM episode_checksum").getInt();
   const int workers = std::clamp(count / static_cast<int>(kBlock), 1, threads);
   Damage damage;
   run_workers(workers, [&](int worker) {

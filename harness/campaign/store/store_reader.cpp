@@ -79,7 +79,7 @@ class EpisodeCursor {
 };
 
 SQLite::Database open_database(const std::string& path) {
-  SQLite::Database database(path, SQLite::OPEN_READONLY | SQLite::OPEN_NOMUTEX, kStorePatience);
+  SQLite::Database database = open_store_to_read(path);
   // All reads in the transaction see the snapshot taken by the first one.
   database.exec("BEGIN");
   return database;

@@ -100,6 +100,10 @@ std::vector<VariantFamily> read_stored_families(SQLite::Database& database) {
 
 }  // namespace
 
+SQLite::Database open_store_to_read(const std::string& path) {
+  return {path, SQLite::OPEN_READONLY | SQLite::OPEN_NOMUTEX, kStorePatience};
+}
+
 std::string episode_columns(const std::string& e, const std::string& t) {
   std::string columns = fmt::format("{0}.variant, {0}.seed, {1}, ", e, outcome_column(e + "."));
   for (const char* name :

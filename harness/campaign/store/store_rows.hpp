@@ -24,6 +24,10 @@ namespace qsmpc::harness {
 /// Timeout for waiting for another user of the store, ms.
 inline constexpr int kStorePatience = 20'000;
 
+/// A connection that only reads the store in the file `path`; for one thread. Throws
+/// SQLite::Exception.
+[[nodiscard]] SQLite::Database open_store_to_read(const std::string& path);
+
 /// The columns of an episode without its periods, as `episode_of` expects them; `e` and `t` are the
 /// aliases of the tables `episode` and `episode_timing`.
 [[nodiscard]] std::string episode_columns(const std::string& e, const std::string& t);

@@ -160,7 +160,7 @@ TEST_F(MujocoPlantFault, arguments_of_a_wrong_size_throw) {
 TEST_F(MujocoPlantFault, refuses_a_missing_file) {
   const auto where = refusal("no_such_car.xml");
   EXPECT_EQ(where.file, "no_such_car.xml");
-  EXPECT_EQ(where.found, "no readable file");
+  EXPECT_EQ(where.found, "no such file");
 }
 
 TEST_F(MujocoPlantFault, refuses_xml_that_is_malformed_or_no_model_and_says_the_line) {
