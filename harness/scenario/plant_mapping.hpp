@@ -121,7 +121,24 @@ struct FeedbackLoop {
   std::optional<double> response;
 };
 
-using PlantLoop = std::variant<AckermannLoop, SpeedHoldLoop, AxleForces, TyreForces, FeedbackLoop>;
+/// What a gait adds to the control of an actuator at the time t (s) since the vehicle was placed:
+/// (amplitude + gain · input) · sin 2π(t/cycle + phase).
+struct GaitSwing {
+  std::string actuator;
+  double amplitude = 0.0;
+  std::string input;   ///< empty: none
+  double gain = 1.0;   ///< of the input, not 0
+  double phase = 0.0;  ///< share of a cycle
+};
+
+/// Low-level loop: a periodic motion of actuators, such as of legs, whose stride depends on inputs.
+struct GaitLoop {
+  double cycle = 1.0;                ///< s, > 0
+  std::vector<GaitSwing> actuators;  ///< at least one
+};
+
+using PlantLoop =
+    std::variant<AckermannLoop, SpeedHoldLoop, AxleForces, TyreForces, FeedbackLoop, GaitLoop>;
 
 /// The range of simulator time steps that a model is valid for, s.
 struct TimeStepRange {

@@ -71,9 +71,20 @@ std::vector<KeyDescription> loop_keys() {
       {{.name = "input", .values = {input}, .words = "input that the goal follows"},
        parameter_key(),
        gain_key("factor on either; without one, the goal itself")}};
-  const ListValue actuators =
-      mappings({element_key("actuator", "actuator that exerts a force or torque"),
-                gain_key("its share of the command, not 0")});
+  const ListValue actuators = mappings(
+      {element_key("actuator", "actuator that exerts a force or torque; `gait`: that swings"),
+       gain_key("its share of the command, not 0; `gait`: of the input in its amplitude, not 0"),
+       {.name = "amplitude",
+        .values = {NumberValue{}},
+        .words = "`gait` only: of the control, to which gain · input is added",
+        .fallback = "0 with an input"},
+       {.name = "input",
+        .values = {input},
+        .words = "`gait` only: an input that the amplitude depends on"},
+       {.name = "phase",
+        .values = {NumberValue{}},
+        .words = "`gait` only: lead, as a share of a cycle",
+        .fallback = "0"}});
   return {
       {.name = "kind",
        .values = {NameValue{loop_kind_names()}},
@@ -90,7 +101,8 @@ std::vector<KeyDescription> loop_keys() {
       {.name = "goal", .values = {goal}, .words = "`feedback`: the value at which it is held"},
       {.name = "actuators",
        .values = {actuators},
-       .words = "`feedback`: the actuators that hold it"},
+       .words = "`feedback`: the actuators that hold it; `gait`: those that it moves"},
+      positive_key("cycle", "`gait`: duration of a cycle", "s"),
       positive_key("time_constant", "`feedback`: time constant of the lag behind the goal", "s"),
       {.name = "response",
        .values = {NumberValue{}},
@@ -189,8 +201,8 @@ std::vector<KeyDescription> mapping_keys() {
 }  // namespace
 
 const std::vector<std::string>& loop_kind_names() {
-  static const std::vector<std::string> names{"ackermann", "speed_hold", "axle_forces",
-                                              "tyre_forces", "feedback"};
+  static const std::vector<std::string> names{"ackermann",   "speed_hold", "axle_forces",
+                                              "tyre_forces", "feedback",   "gait"};
   return names;
 }
 

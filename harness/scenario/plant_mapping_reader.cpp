@@ -157,6 +157,7 @@ class MappingReader {
     if (kind == "axle_forces") mapping_.loops.emplace_back(axle_forces(loop));
     if (kind == "tyre_forces") mapping_.loops.emplace_back(tyre_forces(loop));
     if (kind == "feedback") mapping_.loops.emplace_back(feedback(loop));
+    if (kind == "gait") mapping_.loops.emplace_back(gait(loop));
     if (!kind.empty()) loop.refuse_unread();
   }
 
@@ -227,6 +228,29 @@ class MappingReader {
     if (actuators == 0) loop.note("actuators", "a list of at least one actuator");
     result.time_constant = loop.number("time_constant", result.time_constant, kPositive);
     if (loop.has("response")) result.response = not_zero(loop, "response");
+    return result;
+  }
+
+  GaitLoop gait(Section& loop) {
+    GaitLoop result{.cycle = positive(loop, "cycle"), .actuators = {}};
+    const std::size_t actuators = count(loop, "actuators");
+    for (std::size_t i = 0; i < actuators; ++i) {
+      Section item = loop.item("actuators", i);
+      GaitSwing swing{.actuator = element(item, "actuator"),
+                      .amplitude = item.number("amplitude", 0.0),
+                      .input = {},
+                      .gain = 1.0,
+                      .phase = item.number("phase", 0.0)};
+      if (item.has("input")) {
+        swing.input = input_name(item, "input");
+        swing.gain = not_zero(item, "gain");
+      } else {
+        item.require("amplitude", "a number, or an `input` that the amplitude depends on");
+      }
+      item.refuse_unread();
+      result.actuators.push_back(std::move(swing));
+    }
+    if (actuators == 0) loop.note("actuators", "a list of at least one actuator");
     return result;
   }
 

@@ -94,6 +94,18 @@ struct LoopText {
         quantity_text(loop.quantity), goal, list_of(loop.actuators, actuator),
         yaml_number(loop.time_constant), response);
   }
+
+  std::string operator()(const GaitLoop& loop) const {
+    const auto swing = [](const GaitSwing& one) {
+      const std::string input = one.input.empty() ? ""
+                                                  : fmt::format(", input: {}, gain: {}", one.input,
+                                                                yaml_number(one.gain));
+      return fmt::format("{{actuator: {}, amplitude: {}, phase: {}{}}}", quoted_yaml(one.actuator),
+                         yaml_number(one.amplitude), yaml_number(one.phase), input);
+    };
+    return fmt::format("{{kind: gait, cycle: {}, actuators: {}}}", yaml_number(loop.cycle),
+                       list_of(loop.actuators, swing));
+  }
 };
 
 std::string inputs_text(const PlantMapping& mapping) {

@@ -83,6 +83,8 @@ Simulation::Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded)
       tyres_.emplace_back(named, *tyres).scale_friction(setup.variation.friction);
     } else if (const auto* feedback = std::get_if<FeedbackLoop>(&loop)) {
       feedbacks_.emplace_back(named, *data_, *feedback, system_, setup.parameters);
+    } else if (const auto* gait = std::get_if<GaitLoop>(&loop)) {
+      gaits_.emplace_back(named, *gait, system_, loaded.mapping.settling);
     }
   }
   if (model_->opt.integrator == mjINT_RK4 && !(axles_.empty() && tyres_.empty())) {
@@ -237,13 +239,15 @@ void Simulation::keep_level(Eigen::Ref<Eigen::VectorXd> applied) {
 
 /// Applies the low-level loops to the controls. data: with positions and velocities up to date.
 void Simulation::control() {
-  if (feedbacks_.empty() || feedback_mode_ == Feedback::kOff) {
+  const bool has_feedback = !feedbacks_.empty() && feedback_mode_ != Feedback::kOff;
+  if (gaits_.empty() && !has_feedback) {
     controls_.follow(*data_, targets_);
     return;
   }
   Eigen::VectorXd wanted = targets_;
-  if (feedback_mode_ == Feedback::kTest) wanted += test_controls_;
-  if (feedback_mode_ == Feedback::kOn) {
+  for (const GaitBinding& gait : gaits_) gait.add(time(), active_input_, wanted);
+  if (has_feedback && feedback_mode_ == Feedback::kTest) wanted += test_controls_;
+  if (has_feedback && feedback_mode_ == Feedback::kOn) {
     for (FeedbackBinding& feedback : feedbacks_) feedback.act(*data_, active_input_, wanted);
   }
   controls_.follow(*data_, wanted);

@@ -15,6 +15,7 @@
 #include "harness/plant/mujoco/applied_forces.hpp"
 #include "harness/plant/mujoco/control_binding.hpp"
 #include "harness/plant/mujoco/feedback_binding.hpp"
+#include "harness/plant/mujoco/gait_binding.hpp"
 #include "harness/plant/mujoco/loaded_vehicle.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 #include "harness/plant/mujoco/solid_map.hpp"
@@ -130,6 +131,7 @@ class Simulation {
   std::vector<AxleForceBinding> axles_;
   std::vector<TyreForceBinding> tyres_;
   std::vector<FeedbackBinding> feedbacks_;
+  std::vector<GaitBinding> gaits_;
   enum class Feedback { kOff, kTest, kOn } feedback_mode_ = Feedback::kOn;
   Eigen::VectorXd test_controls_;  // of kTest
   struct RollingWheel {
