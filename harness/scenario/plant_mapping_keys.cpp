@@ -77,7 +77,7 @@ std::vector<KeyDescription> loop_keys() {
        {.name = "amplitude",
         .values = {NumberValue{}},
         .words = "`gait` only: of the control, to which gain · input is added",
-        .fallback = "0 with an input"},
+        .fallback = "0"},
        {.name = "input",
         .values = {input},
         .words = "`gait` only: an input that the amplitude depends on"},

@@ -18,9 +18,9 @@ const std::string kScenario = std::string(QSMPC_SOURCE_DIR) + "/examples/quadrup
 TEST(Quadruped, answers_as_the_model_and_the_doctor_finds_a_wrong_speed) {
   const ProcessResult shipped = run_qsmpc({"doctor", kScenario});
   EXPECT_EQ(shipped.exit_code, 0) << shipped.output << shipped.errors;
-  const ProcessResult guessed = run_qsmpc({"doctor", kScenario, "--set", "model.speed=0.4"});
+  const ProcessResult guessed = run_qsmpc({"doctor", kScenario, "--set", "model.speed=0.7"});
   EXPECT_EQ(guessed.exit_code, 1) << guessed.output;
-  EXPECT_THAT(guessed.output, HasSubstr("x        1.6 m     1.3 m"));
+  EXPECT_THAT(guessed.output, HasSubstr("x        2.8 m     1.3 m"));
 }
 
 TEST(Quadruped, arrives_and_leaves_a_page_and_a_video) {
