@@ -215,7 +215,8 @@ std::int64_t EpisodeChecksums::of(std::int64_t variant, std::int64_t seed) {
 }
 
 std::optional<StoredEpisode> damaged_episode(const std::string& path, int threads) {
-  const int count = open_store_to_read(path).execAndGet("SELECT count(*) FROM episode_checksum").getInt();
+  const int count =
+      open_store_to_read(path).execAndGet("SELECT count(*) FROM episode_checksum").getInt();
   const int workers = std::clamp(count / static_cast<int>(kBlock), 1, threads);
   Damage damage;
   run_workers(workers, [&](int worker) {
