@@ -21,6 +21,16 @@ GaitBinding::GaitBinding(const NamedModel& named, const GaitLoop& loop,
                        .phase = swing.phase});
   }
   constexpr double kRounding = 1e-9;
+  constexpr double kLeastSteps = 10.0;
+  const double step = named.model.opt.timestep;
+  if (cycle_ < kLeastSteps * step * (1.0 - kRounding)) {
+    throw InputError(
+        {.file = named.file,
+         .key = "plant.loops",
+         .found = fmt::format("a gait with a cycle of {} s, {:.3g} steps of the simulator", cycle_,
+                              cycle_ / step),
+         .expected = fmt::format("a cycle of at least ten steps, {} s", kLeastSteps * step)});
+  }
   const double cycles = settling / cycle_;
   if (std::abs(cycles - std::round(cycles)) <= kRounding * cycles) return;
   throw InputError(

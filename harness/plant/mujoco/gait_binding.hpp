@@ -13,9 +13,10 @@ namespace qsmpc::harness {
 
 class GaitBinding {
  public:
-  /// Throws InputError on a name that the model does not have, and unless `settling` (s) is a whole
-  /// number of the gait's cycles: otherwise the gait would jump when a settled vehicle is placed
-  /// and its time starts again.
+  /// Throws InputError on a name that the model does not have, on a cycle of fewer than ten of the
+  /// simulator's steps, which would be no swing, and unless `settling` (s) is a whole number of the
+  /// gait's cycles: otherwise the gait would jump when a settled vehicle is placed and its time
+  /// starts again.
   GaitBinding(const NamedModel& named, const GaitLoop& loop,
               const models::SystemDescription& system, double settling);
 
