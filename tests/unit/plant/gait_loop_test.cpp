@@ -120,7 +120,7 @@ TEST(GaitLoop, refuses_what_it_cannot_do) {
   EXPECT_EQ(refused_gait("{actuator: front_left_hip, amplitude: 1, gain: 2}").expected,
             "only beside an `input`");
   EXPECT_THAT(refusal({"plant.loops=[{kind: gait, cycle: 0.01, actuators: [{actuator: "
-                       "front_left_hip, amplitude: 1}]}]"})
+                       "front_left_hip, input: yaw_rate}]}]"})
                   .expected,
               HasSubstr("at least ten steps, 0.025 s"));
   EXPECT_EQ(refusal({"plant.loops=[{kind: gait, actuators: [{actuator: front_left_hip, input: "
