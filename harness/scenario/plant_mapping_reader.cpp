@@ -246,7 +246,7 @@ class MappingReader {
         swing.gain = not_zero(item, "gain");
       } else {
         item.require("amplitude", "a number, or an `input` that the amplitude depends on");
-        if (item.tree("gain") != nullptr) item.note("gain", "only beside an `input`");
+        if (item.tree("gain") != nullptr) item.note("gain", "an `input` beside it");
       }
       item.refuse_unread();
       result.actuators.push_back(std::move(swing));

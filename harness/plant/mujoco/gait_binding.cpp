@@ -25,8 +25,7 @@ GaitBinding::GaitBinding(const NamedModel& named, const GaitLoop& loop,
   const double step = named.model.opt.timestep;
   if (cycle_ < kLeastSteps * step * (1.0 - kRounding)) {
     throw InputError(
-        {.file = named.file,
-         .key = "plant.loops",
+        {.key = "plant.loops",
          .found = fmt::format("a gait with a cycle of {} s, {:.3g} steps of the simulator", cycle_,
                               cycle_ / step),
          .expected = fmt::format("a cycle of at least ten steps, {} s", kLeastSteps * step)});
@@ -34,8 +33,7 @@ GaitBinding::GaitBinding(const NamedModel& named, const GaitLoop& loop,
   const double cycles = settling / cycle_;
   if (std::abs(cycles - std::round(cycles)) <= kRounding * cycles) return;
   throw InputError(
-      {.file = named.file,
-       .key = "plant.settling",
+      {.key = "plant.settling",
        .found = fmt::format("{} s, {:.4g} cycles of a gait of {} s", settling, cycles, cycle_),
        .expected = "a whole number of cycles, so that the gait goes on where it was "
                    "when the vehicle is placed"});

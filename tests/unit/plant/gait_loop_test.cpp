@@ -118,7 +118,7 @@ TEST(GaitLoop, refuses_what_it_cannot_do) {
   EXPECT_THAT(refused_gait("{actuator: front_left_hip, amplitude: 1, input: speed}").expected,
               HasSubstr("yaw_rate"));
   EXPECT_EQ(refused_gait("{actuator: front_left_hip, amplitude: 1, gain: 2}").expected,
-            "only beside an `input`");
+            "an `input` beside it");
   EXPECT_THAT(refusal({"plant.loops=[{kind: gait, cycle: 0.01, actuators: [{actuator: "
                        "front_left_hip, input: yaw_rate}]}]"})
                   .expected,
