@@ -147,7 +147,7 @@ Chart certificate_chart(const EpisodeView& view) {
               .y_includes = {1.0},
               .series = {series_of(trace, "next step", kBlue, next_step)}};
   if (view.parts().stages > 0) {
-    chart.series.push_back(series_of(trace, "plan: sum over its stages", kVermilion, plan));
+    chart.series.push_back(series_of(trace, "plan: at any of its stages", kVermilion, plan));
   }
   chart.series.push_back(
       series_of(trace, "published method, worst stage: not a bound", kPurple, thesis));

@@ -25,8 +25,9 @@ constexpr std::string_view kMeaning =
     "<section class=\"card\">\n<h3>What a certificate says</h3>\n"
     "<p>A certificate is an upper bound of the probability that the <em>model’s</em> state is "
     "unsafe: at the next step, given the belief from which the plan was made. The certificate of a "
-    "plan sums over its stages and holds for the plan as made, not for the replanning at every "
-    "step. Neither covers the plant’s mismatch to the model, which is measured below.</p>\n"
+    "plan is one of being unsafe at any of its stages; it holds for the plan as made, not for the "
+    "replanning at every step. Neither covers the plant’s mismatch to the model, which is measured "
+    "below.</p>\n"
     "</section>\n";
 
 constexpr std::string_view kMeaningWithoutPlan =

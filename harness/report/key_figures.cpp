@@ -180,7 +180,7 @@ void add_limit_tiles(const Summary& summary, std::vector<Tile>& tiles) {
     tiles.push_back(limit_tile(summary, "Stage risk", risk.stage, "largest of a plan's stages"));
   }
   if (risk.plan.is_limited()) {
-    tiles.push_back(limit_tile(summary, "Plan risk", risk.plan, "largest sum over a plan"));
+    tiles.push_back(limit_tile(summary, "Plan risk", risk.plan, "all stages of a plan together"));
   }
   if (risk.mission.is_limited()) {
     tiles.push_back(limit_tile(summary, "Mission risk spent", risk.mission,
@@ -324,7 +324,7 @@ std::string tiles_html(const EpisodeView& view) {
   if (summary.waypoints) tiles.insert(tiles.begin() + 1, waypoints_tile(*summary.waypoints));
   if (parts.stages > 0) {
     tiles.push_back(bound_tile(summary, "Largest plan certificate", summary.horizon_max,
-                               "sum over a plan's stages"));
+                               "all stages of a plan together"));
   }
   add_limit_tiles(summary, tiles);
   if (summary.unsafe_between) tiles.push_back(between_tile(summary));
