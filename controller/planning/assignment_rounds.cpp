@@ -15,10 +15,15 @@ constexpr int kAssignmentRounds = 3;
 constexpr int kGainRounds = 2;
 // Relative tolerance of the rounds on a warm start: the next period continues the optimisation.
 constexpr double kWarmTolerance = 1e-7;
+// On a warm start without constraints, the first round's tolerance is this share of the last
+// change by new assignments, and at most the second number: what a round finds below that, the
+// next assignments undo.
+constexpr double kWarmShareOfChange = 0.1;
+constexpr double kLoosestWarmTolerance = 1e-4;
 // Relative tolerance of the first round of a cold start, as new assignments will change the
 // problem; that of the following rounds is this share of the last change.
 constexpr double kColdTolerance = 1e-5;
-constexpr double kShareOfChange = 0.01;
+constexpr double kColdShareOfChange = 0.01;
 // Relative decrease of the cost that a round must promise to be worth a prediction, for warm and
 // cold starts.
 constexpr double kWarmSettled = 1e-5;
@@ -102,9 +107,8 @@ void AssignmentRounds::optimise(PlanInProgress& plan) {
     }
   }
   const int rounds = kAssignmentRounds + (plan.evaluated ? 0 : 1);
-  // Constraints need precise rounds, and gains are optimised about converged inputs.
-  const bool loose = !plan.warm && !evaluator_.constraints() && !gains_;
-  tolerance_ = loose ? kColdTolerance : 0.0;
+  tolerance_ = first_tolerance(plan);
+  if (!plan.warm) change_ = 0.0;
   if (optimise(inputs_, rounds, plan) && gains_) {
     // The last prediction may be that of a rejected candidate.
     evaluator_.hold(*plan.current);
@@ -118,6 +122,15 @@ void AssignmentRounds::optimise(PlanInProgress& plan) {
     // The failed search was for something better than the plan that is kept.
     plan.status = SolverStatus::kStalled;
   }
+}
+
+/// The lower limit of the solver's tolerance in the first round.
+double AssignmentRounds::first_tolerance(const PlanInProgress& plan) const {
+  // Constraints need precise rounds, and gains are optimised about converged inputs.
+  if (evaluator_.constraints() || gains_) return 0.0;
+  if (!plan.warm) return kColdTolerance;
+  if (evaluator_.risk() != nullptr) return 0.0;
+  return std::min(kLoosestWarmTolerance, kWarmShareOfChange * change_);
 }
 
 /// Whether the candidate violates something that another round, with tightened constraints, could
@@ -149,17 +162,16 @@ bool AssignmentRounds::optimise(Search& search, int rounds, PlanInProgress& plan
     const bool promising = run_solver(search, plan);
     stopwatch.add_to(plan.timing.optimise);
     if (!promising) {
-      if (tolerance_ == 0.0) break;
+      if (tolerance_ == 0.0 || plan.warm) break;
       tolerance_ = 0.0;
       --n;  // no prediction was needed
       continue;
     }
     predict_candidate(search.z, plan);
     stopwatch.add_to(plan.timing.propagate);
-    if (tolerance_ > 0.0) {
-      const double change = std::abs(plan.candidate->cost.total() / search.least - 1.0);
-      tolerance_ = std::min(tolerance_, kShareOfChange * change);
-    }
+    change_ = std::abs(plan.candidate->cost.total() / search.least - 1.0);
+    const double share = plan.warm ? kWarmShareOfChange : kColdShareOfChange;
+    tolerance_ = std::min(tolerance_, share * change_);
     const bool accepted = !plan.evaluated || better(*plan.candidate, *plan.current);
     const bool more = asks_for_more(*plan.candidate, plan, n, rounds);
     if (accepted) plan.accept_candidate();

@@ -54,6 +54,7 @@ class AssignmentRounds {
   [[nodiscard]] double evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient);
   [[nodiscard]] SolverOptions solver_options(const PlanInProgress& plan) const;
   [[nodiscard]] const SolverResult& minimise(Search& search, PlanInProgress& plan);
+  [[nodiscard]] double first_tolerance(const PlanInProgress& plan) const;
   [[nodiscard]] bool asks_for_more(const Plan& candidate, PlanInProgress& plan, int round,
                                    int& rounds) const;
   [[nodiscard]] bool optimise(Search& search, int rounds, PlanInProgress& plan);
@@ -67,6 +68,7 @@ class AssignmentRounds {
   std::unique_ptr<Search> gains_;  // over inputs and gains, if these are optimised
   Eigen::MatrixXd gain_change_;    // of a candidate
   double tolerance_ = 0.0;         // lower limit of the solver's own
+  double change_ = 0.0;            // relative, of the cost at the last new assignments
   Aim aim_ = Aim::kCost;
   AugmentedLagrangian lagrangian_;
   double cost_share_ = 0.0;  // weight of the cost when the risk is minimised

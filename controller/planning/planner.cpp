@@ -49,7 +49,8 @@ void Planner::set_limits(const PlanRequest& request) {
                         request.period);
 }
 
-const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
+/// A plan of which only the belief is set.
+PlanInProgress Planner::begin(const Gaussian& belief, const PlanRequest& request) {
   PlanInProgress plan{.deadline = request.deadline};
   if (std::isfinite(settings_.deadline)) {
     const auto longest = std::chrono::duration_cast<Clock::duration>(
@@ -66,6 +67,12 @@ const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
   set_limits(request);
   evaluator_.take_belief(belief, request.progress);
   stopwatch.add_to(plan.timing.quantise);
+  return plan;
+}
+
+const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
+  PlanInProgress plan = begin(belief, request);
+  PlanStopwatch stopwatch;
   start_.choose(belief, failed_ ? nullptr : last_, plan);
   if (!plan.warm && !plan.late() && begin_effort(*plan.current)) {
     evaluator_.set_policy(plan.current->policy.inputs, plan.current->gain_change, *plan.current);
@@ -73,6 +80,26 @@ const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
     plan.evaluated = true;
   }
   stopwatch.add_to(plan.timing.propagate);
+  return finish(plan, belief, request);
+}
+
+const Plan& Planner::plan_from(const Gaussian& belief, const Plan& start,
+                               std::optional<double> progress) {
+  reset();
+  const PlanRequest request{.progress = progress};
+  PlanInProgress plan = begin(belief, request);
+  PlanStopwatch stopwatch;
+  plan.current->policy = start.policy;
+  plan.current->gain_change = start.gain_change;
+  // Holds the assignments of the start, of which the cost is not asked for: as on a warm start.
+  evaluator_.predict_and_evaluate(*plan.current);
+  stopwatch.add_to(plan.timing.propagate);
+  return finish(plan, belief, request);
+}
+
+/// Optimises the plan, with what its risk limits ask for, and keeps it as the last one.
+const Plan& Planner::finish(PlanInProgress& plan, const Gaussian& belief,
+                            const PlanRequest& request) {
   rounds_.optimise(plan);
   if (evaluator_.risk() != nullptr) settle(plan, belief, request);
   Plan& made = *plan.current;

@@ -58,6 +58,13 @@ class Planner {
   /// failure the next plan is a cold start. The plan stays valid until the next call.
   const Plan& plan(const Gaussian& belief, const PlanRequest& request = {});
 
+  /// Plans from `start`, which another planner made for the same belief, progress (PlanRequest) and
+  /// system, as `plan` does from the last plan: optimises at the assignments of `start`, keeps what
+  /// comes out, and goes on while that pays. Forgets the last plan; the next one starts from the
+  /// result. Throws std::invalid_argument as `plan` does.
+  const Plan& plan_from(const Gaussian& belief, const Plan& start,
+                        std::optional<double> progress = {});
+
   /// The plan with the nominal inputs `inputs` (input_dim x horizon): predicted and evaluated for
   /// `belief`, with the gains for these inputs, but not optimised. The plan stays valid until the
   /// next call, which does not start from it. Throws std::invalid_argument as `plan` does, and on
@@ -94,6 +101,8 @@ class Planner {
 
  private:
   void set_limits(const PlanRequest& request);
+  [[nodiscard]] PlanInProgress begin(const Gaussian& belief, const PlanRequest& request);
+  const Plan& finish(PlanInProgress& plan, const Gaussian& belief, const PlanRequest& request);
   void begin_prescribed(const Gaussian& belief, std::optional<double> progress);
   void fall_back(Plan& plan);
   void settle(PlanInProgress& plan, const Gaussian& belief, const PlanRequest& request);

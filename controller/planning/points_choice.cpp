@@ -52,7 +52,7 @@ class PointsComparison {
     for (int points = fewest(); points < most;
          points = static_cast<int>(std::ceil(points * kLadderStep))) {
       const PlannerSettings fewer = with_points(settings_, points);
-      const double gap = worst_gap(fewer);
+      const double gap = gap_of(fewer);
       if (gap <= search_.tolerance) return choice_of(fewer, gap);
     }
     return choice_of(settings_, 0.0);
@@ -105,9 +105,13 @@ class PointsComparison {
   /// Plans with the most points, and adds the place if the plan is finite. Returns whether it did.
   bool add_place(const Gaussian& belief, std::optional<double> progress) {
     judge_.reset();
-    const Plan& plan = judge_.plan(belief, {.progress = progress});
+    Plan plan = judge_.plan(belief, {.progress = progress});
     if (!std::isfinite(plan.cost.total())) return false;
-    places_.push_back({belief, progress, plan});
+    // The first guess may have been far off.
+    const Plan& next = judge_.plan_from(belief, plan, progress);
+    if (better(next, plan)) plan = next;
+    total_ += plan.cost.total();
+    places_.push_back({belief, progress, std::move(plan)});
     return true;
   }
 
@@ -131,31 +135,24 @@ class PointsComparison {
     return (way.array().abs() <= kDeviations * deviations).all();
   }
 
-  /// The gap of the settings `fewer` at the worst place; stops early once it exceeds the tolerance.
-  double worst_gap(const PlannerSettings& fewer) {
+  /// The change of all places' plans with the settings `fewer`, relative to their cost; infinite if
+  /// one of them cannot be compared.
+  double gap_of(const PlannerSettings& fewer) {
     Planner planner(dynamics_, fewer);
-    double worst = -kInfinity;
-    for (const Place& place : places_) {
-      worst = std::max(worst, gap_at(place, planner));
-      if (worst > search_.tolerance) break;
-    }
-    return worst;
+    double change = 0.0;
+    for (const Place& place : places_) change += change_at(place, planner);
+    // Costs are at least 0, and 0 only at the end of a drive without noise.
+    const double gap = change / std::max(total_, std::numeric_limits<double>::min());
+    return std::isfinite(gap) ? gap : kInfinity;
   }
 
-  /// By how much `planner` overestimates the advantage of its own plan over the one with the most
-  /// points, relative to the latter's cost; infinite if undefined.
-  double gap_at(const Place& place, Planner& planner) {
-    planner.reset();
-    const Plan& plan = planner.plan(place.belief, {.progress = place.progress});
-    const double own = plan.cost.total();
+  /// By how much the cost of the place's plan, by the most points, grows when `planner` goes on
+  /// from it.
+  double change_at(const Place& place, Planner& planner) {
+    const Plan& plan = planner.plan_from(place.belief, place.plan, place.progress);
     const Plan& judged = judge_.price(place.belief, plan, place.progress);
     if (plan.risk.kept && !judged.risk.kept) return kInfinity;
-    const double best = place.plan.cost.total();
-    const double best_seen = planner.price(place.belief, place.plan, place.progress).cost.total();
-    // Costs are at least 0, and 0 only at the end of a drive without noise.
-    const double gap = ((judged.cost.total() - best) - (own - best_seen)) /
-                       std::max(best, std::numeric_limits<double>::min());
-    return std::isfinite(gap) ? gap : kInfinity;
+    return judged.cost.total() - place.plan.cost.total();
   }
 
   const models::Dynamics& dynamics_;
@@ -164,6 +161,7 @@ class PointsComparison {
   UnsafeSet unsafe_;
   Planner judge_;
   std::vector<Place> places_;
+  double total_ = 0.0;  // cost of the places' plans
 };
 
 }  // namespace

@@ -27,8 +27,8 @@ struct PointsSearch {
 struct PointsChoice {
   int state_points = 0;       ///< of the belief
   int compressed_points = 0;  ///< kept after each step of the prediction
-  /// Relative increase in cost with these points at the worst place: at most the tolerance;
-  /// negative if these points mislead nowhere; 0 if all points are kept.
+  /// Relative increase in cost with these points, over all places: at most the tolerance; negative
+  /// if the cost falls; 0 if all points are kept.
   double gap = 0.0;
   int places = 0;  ///< number compared; with none, all points are kept
 
@@ -39,19 +39,18 @@ struct PointsChoice {
   }
 };
 
-/// Plans with increasing numbers of points, from 2 state_dim + 1 up to those of `settings`, and
-/// returns the lowest numbers that mislead no plan by more than the tolerance. Plans are compared
-/// from `belief` (state_dim); from places on the way to the target, each at the nominal end of the
-/// plan before, with the covariance of one period's noise, until a plan stays in place; and, for
-/// each of these plans, from its final point nearest to the unsafe set, where the noise may well
-/// take the state. Each plan is a cold start.
+/// Plans with the points of `settings`, lets planners with increasing numbers of points, from
+/// 2 state_dim + 1 on, go on from these plans, and returns the lowest numbers that make them dearer
+/// by no more than the tolerance. Plans are compared from `belief` (state_dim); from places on the
+/// way to the target, each at the nominal end of the plan before, with the covariance of one
+/// period's noise, until a plan stays in place; and, for each of these plans, from its final point
+/// nearest to the unsafe set, where the noise may well take the state.
 ///
-/// Let J_n be the cost that a planner with n points predicts, N the most points, and π_n and π_N
-/// the plans of the two. Then J_N(π_n) − J_N(π_N) = [J_n(π_n) − J_n(π_N)] + [(J_N − J_n)(π_n) −
-/// (J_N − J_n)(π_N)]. The first bracket is due to the solver: at most 0 if it finds the best plan,
-/// and otherwise as much a matter of luck with many points as with few. The second is the error due
-/// to the points, and is compared with the tolerance. With risk limits, a plan that keeps them with
-/// n points must also keep them with N.
+/// Let J_N be the cost predicted with the most points, π_N a plan with these, and π_n what the
+/// planner with n points makes of it (Planner::plan_from). J_N(π_n) − J_N(π_N), summed over all
+/// places, relative to the sum of J_N(π_N), is compared with the tolerance. As π_n starts from π_N,
+/// the comparison is about the points, and hardly about luck in finding a minimum. With risk
+/// limits, a plan that keeps them with n points must also keep them with N.
 ///
 /// Depends only on its arguments; deadlines are ignored. Throws std::invalid_argument as Planner
 /// does, and on an invalid search.

@@ -64,10 +64,10 @@ void settle_points(Scenario& scenario, bool quiet) {
     return;
   }
   std::cerr << fmt::format(
-      "qsmpc: {} of {} points for the belief, {} of {} kept; in {} trial plans they mislead by at "
-      "most {:.2g} % of a plan's cost\n",
+      "qsmpc: {} of {} points for the belief, {} of {} kept; in {} trial plans they change "
+      "the cost by {:+.2g} %\n",
       choice->state_points, asked.state, choice->compressed_points, asked.compressed,
-      choice->places, 100.0 * std::max(choice->gap, 0.0));
+      choice->places, 100.0 * choice->gap);
 }
 
 }  // namespace qsmpc::harness

@@ -266,6 +266,33 @@ TEST(Planner, prescribes_given_inputs_without_optimising) {
   EXPECT_LT(planner.plan(dubins_belief()).cost.total(), prescribed);
 }
 
+TEST(Planner, improves_the_plan_of_another_planner_and_goes_on_from_it) {
+  const auto car = dubins_car();
+  PlannerSettings starved = dubins_settings();
+  starved.max_evaluations = 2;
+  Planner other(*car, starved);
+  const Plan& start = other.plan(dubins_belief());
+  Planner planner(*car, dubins_settings());
+  const double before = planner.price(dubins_belief(), start).cost.total();
+  const double after = planner.plan_from(dubins_belief(), start).cost.total();
+  EXPECT_LT(after, before);
+  // A free plane has a single minimum.
+  EXPECT_NEAR(after, Planner(*car, dubins_settings()).plan(dubins_belief()).cost.total(),
+              2e-4 * after);
+  EXPECT_TRUE(planner.plan(dubins_belief()).warm);
+}
+
+TEST(Planner, improving_what_cannot_be_improved_leaves_it_as_it_is) {
+  const auto car = dubins_car();
+  Planner first(*car, dubins_settings());
+  (void)first.plan(dubins_belief());
+  const Plan& best = first.plan(dubins_belief());
+  Planner second(*car, dubins_settings());
+  EXPECT_LE(second.plan_from(dubins_belief(), best).cost.total(), best.cost.total());
+  EXPECT_NEAR(second.plan_from(dubins_belief(), best).cost.total(), best.cost.total(),
+              2e-4 * best.cost.total());
+}
+
 TEST(Planner, refuses_prescribed_inputs_that_it_could_not_apply) {
   const auto car = dubins_car();
   Planner planner(*car, dubins_settings());
