@@ -12,6 +12,7 @@
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/cli/scenario_arguments.hpp"
 #include "harness/contest/contest_file.hpp"
 #include "harness/doctor/diagnosis.hpp"
 #include "harness/errors.hpp"
@@ -34,12 +35,13 @@ struct FileVerdict {
   std::optional<LoadedContest> contest{};
 };
 
-FileVerdict verdict_on_scenario(const std::string& file) {
-  FileVerdict verdict{.file = file, .errors = validate_scenario_file(file)};
+FileVerdict verdict_on_scenario(const std::string& file,
+                                const std::vector<std::string>& overrides) {
+  FileVerdict verdict{.file = file, .errors = validate_scenario_file(file, overrides)};
   if (!verdict.errors.empty()) return verdict;
   try {
-    const Scenario scenario = load_scenario(file);
-    if (const auto problem = plant_problem(scenario, file)) {
+    const Scenario scenario = load_scenario(file, overrides);
+    if (const auto problem = plant_problem(scenario, file, overrides)) {
       verdict.errors.push_back(*problem);
       return verdict;
     }
@@ -63,9 +65,16 @@ FileVerdict verdict_on_contest(const std::string& file) {
   }
 }
 
-FileVerdict verdict_on(const std::string& file) {
-  if (is_contest_file(file)) return verdict_on_contest(file);
-  if (!is_campaign_file(file)) return verdict_on_scenario(file);
+FileVerdict verdict_on(const std::string& file, const std::vector<std::string>& overrides) {
+  const bool is_contest = is_contest_file(file);
+  if (!is_contest && !is_campaign_file(file)) return verdict_on_scenario(file, overrides);
+  if (!overrides.empty()) {
+    throw InputError({.file = file,
+                      .key = "--set",
+                      .found = "a campaign or a contest",
+                      .expected = "a scenario; theirs are changed by their own files"});
+  }
+  if (is_contest) return verdict_on_contest(file);
   try {
     return {.file = file, .campaign = load_campaign(file)};
   } catch (const InputError& error) {
@@ -120,19 +129,25 @@ nlohmann::ordered_json as_json(const FileVerdict& verdict) {
   return json;
 }
 
-int validate(const std::vector<std::string>& files, bool json) {
+struct ValidateArguments {
+  std::vector<std::string> files;
+  std::vector<std::string> overrides;
+  bool json = false;
+};
+
+int validate(const ValidateArguments& arguments) {
   bool all_valid = true;
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   std::string text;
-  for (const std::string& file : files) {
-    const FileVerdict verdict = verdict_on(file);
+  for (const std::string& file : arguments.files) {
+    const FileVerdict verdict = verdict_on(file, arguments.overrides);
     all_valid = all_valid && verdict.errors.empty();
     text += as_text(verdict);
     results.push_back(as_json(verdict));
   }
   // As documented, one file gives one object; several give an array.
   const auto& value = results.size() == 1 ? results.front() : results;
-  print_result(json ? json_text(value) : text);
+  print_result(arguments.json ? json_text(value) : text);
   return all_valid ? kDone : kBadInput;
 }
 
@@ -142,13 +157,14 @@ void add_validate_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "validate", "Checks scenario, campaign and contest files without running them.");
   command->footer("Example: qsmpc validate my_scenario.yaml");
-  const auto files = std::make_shared<std::vector<std::string>>();
-  const auto json = std::make_shared<bool>(false);
+  const auto arguments = std::make_shared<ValidateArguments>();
   command
-      ->add_option("files", *files, "scenario, campaign or contest files, or names of shipped ones")
+      ->add_option("files", arguments->files,
+                   "scenario, campaign or contest files, or names of shipped ones")
       ->required();
-  command->add_flag("--json", *json, "print JSON");
-  command->callback([files, json, &exit_code] { exit_code = validate(*files, *json); });
+  add_set_option(*command, arguments->overrides);
+  command->add_flag("--json", arguments->json, "print JSON");
+  command->callback([arguments, &exit_code] { exit_code = validate(*arguments); });
 }
 
 }  // namespace qsmpc::harness

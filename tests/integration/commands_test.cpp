@@ -49,6 +49,23 @@ TEST(Commands, list_and_validate_and_help) {
   EXPECT_EQ(json["errors"][0]["line"], 5);
 }
 
+TEST(Commands, validate_takes_the_settings_that_run_takes) {
+  EXPECT_EQ(run_qsmpc({"validate", "dubins_obstacles", "--set", "controller.horizon=9"}).exit_code,
+            0);
+  const ProcessResult wrong =
+      run_qsmpc({"validate", "dubins_obstacles", "--set", "controller.horizon=0"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.output, HasSubstr("controller.horizon"));
+  const ProcessResult plant =
+      run_qsmpc({"validate", "dubins_obstacles", "--set", "plant.mjcf=nowhere.xml"});
+  EXPECT_EQ(plant.exit_code, 2);
+  EXPECT_THAT(plant.output, HasSubstr("nowhere.xml"));
+  const ProcessResult campaign =
+      run_qsmpc({"validate", "mission_budget", "--set", "controller.horizon=9"});
+  EXPECT_EQ(campaign.exit_code, 2);
+  EXPECT_THAT(campaign.errors, HasSubstr("found a campaign or a contest, expected a scenario"));
+}
+
 TEST(Commands, warn_of_limits_that_the_start_exceeds) {
   const TemporaryFolder folder;
   const std::string file = folder.file(
