@@ -220,10 +220,13 @@ std::int64_t write_store(const std::string& path, const std::vector<std::string>
                          const Joined& stores, const StoredCampaign& campaign,
                          const MergePolicy& policy) {
   JoinedStore store(path, campaign, stores.variants);
-  for (const std::string& folder : folders) {
-    with_store_errors(folder + "/" + kStoreFile, [&] { store.add(folder, policy); });
-  }
   const SeedSet seeds = seeds_from_text(campaign.seeds);
+  for (const KeyRange& range :
+       key_ranges(std::ssize(stores.variants), seeds, policy.episodes_at_a_time)) {
+    for (const std::string& folder : folders) {
+      with_store_errors(folder + "/" + kStoreFile, [&] { store.add(folder, policy, range); });
+    }
+  }
   std::vector<std::uint64_t> sorted = seeds.listed;
   std::ranges::sort(sorted);
   for (const StoredVariant& variant : read_variants(store.database())) {

@@ -22,6 +22,9 @@ struct MergePolicy {
   bool incomplete = false;
   /// Whether an existing store in `out` is replaced.
   bool replace = false;
+  /// Episodes of the campaign that are copied from all stores before the next ones, >= 1. Does not
+  /// change the result.
+  std::int64_t episodes_at_a_time = 250'000;
 };
 
 /// Merges the stores in `folders` and their kept traces into the folder `out`, which is created if

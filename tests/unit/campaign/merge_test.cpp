@@ -1,6 +1,8 @@
 #include "harness/campaign/store/merge.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/campaign/runner.hpp"
+#include "harness/campaign/store/joined_store.hpp"
 #include "harness/campaign/store/store.hpp"
 #include "harness/errors.hpp"
 #include "harness/trace/trace_file.hpp"
@@ -244,6 +247,56 @@ TEST_F(MergeOfParts, takes_an_episode_that_several_have_once_and_from_the_first)
   EXPECT_EQ(ends(1)[1], testing::example_row(1, 6).timing.finished_at);
   EXPECT_EQ(ends(1)[2], testing::example_row(1, 7).timing.finished_at + 50.0);
   EXPECT_NO_THROW(StoreReader(out()).verify());
+}
+
+TEST_F(MergeOfParts, comes_out_the_same_however_many_episodes_are_copied_at_a_time) {
+  const std::vector<std::string> parts{part({5, 8}), part({6, 8}, 0.0, 50.0), part({7})};
+  const auto merged = [&](std::int64_t at_a_time) {
+    merge_stores(parts, out(),
+                 {.duplicates = true, .replace = true, .episodes_at_a_time = at_a_time});
+    StoreReader(out()).verify();
+    std::vector<EpisodeRow> rows;
+    for (const std::int64_t variant : {0, 1}) {
+      StoreReader(out()).for_each_episode(variant,
+                                          [&](const EpisodeRow& row) { rows.push_back(row); });
+    }
+    return rows;
+  };
+  const std::vector<EpisodeRow> whole = merged(1000);
+  EXPECT_EQ(whole.size(), 8U);
+  for (const std::int64_t at_a_time : {1, 2, 3, 4, 7}) EXPECT_EQ(merged(at_a_time), whole);
+}
+
+TEST_F(MergeOfParts, says_which_episode_is_double_or_foreign_in_each_pass) {
+  EXPECT_THAT(refusal_of_parts({part({5, 6}), part({6, 7, 8})}, {.episodes_at_a_time = 1}),
+              HasSubstr("seed 6, which another shard also has"));
+  for (const std::uint64_t foreign : {4U, 9U}) {
+    EXPECT_THAT(
+        refusal_of_parts({part({5, foreign})}, {.incomplete = true, .episodes_at_a_time = 1}),
+        HasSubstr(fmt::format("seed {}, which is not one of the campaign's", foreign)));
+  }
+}
+
+TEST(KeyRanges, follow_one_another_and_leave_nothing_out) {
+  const auto whole = [](const KeyRange& range) {
+    return range.first_seed == std::numeric_limits<std::int64_t>::min() &&
+           range.last_seed == std::numeric_limits<std::int64_t>::max();
+  };
+  const std::vector<KeyRange> groups = key_ranges(5, {.first = 3, .count = 10}, 25);
+  ASSERT_EQ(groups.size(), 3U);  // of two variants, and the last one
+  EXPECT_EQ(groups[1].first_variant, 2);
+  EXPECT_EQ(groups[2].last_variant, 4);
+  EXPECT_TRUE(std::ranges::all_of(groups, whole));
+  // The last two seeds are stored as negative numbers.
+  const SeedSet listed{.listed = {7, 1, 30, 9, std::uint64_t(-2), std::uint64_t(-5)}};
+  const std::vector<KeyRange> parts = key_ranges(1, listed, 2);
+  ASSERT_EQ(parts.size(), 3U);
+  EXPECT_EQ(parts.front().first_seed, std::numeric_limits<std::int64_t>::min());
+  EXPECT_EQ(parts[0].last_seed, 0);
+  EXPECT_EQ(parts[1].first_seed, 1);
+  EXPECT_EQ(parts[1].last_seed, 8);
+  EXPECT_EQ(parts[2].first_seed, 9);
+  EXPECT_EQ(parts.back().last_seed, std::numeric_limits<std::int64_t>::max());
 }
 
 TEST_F(MergeOfParts, refuses_episodes_that_contradict_each_other) {
