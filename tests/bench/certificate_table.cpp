@@ -24,6 +24,7 @@
 #include "controller/certification/error_budget.hpp"
 #include "controller/planning/planner.hpp"
 #include "models/constants.hpp"
+#include "tests/property/random_draws.hpp"
 #include "tests/property/random_problem.hpp"
 #include "tests/support/simulated_truth.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "controller/regions/planar/convex_surface.hpp"
 #include "models/constants.hpp"
+#include "tests/property/random_draws.hpp"
 
 namespace qsmpc::testing {
 

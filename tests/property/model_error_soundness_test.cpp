@@ -16,6 +16,7 @@
 #include "models/constants.hpp"
 #include "tests/property/erring_plants.hpp"
 #include "tests/property/marginal_w2.hpp"
+#include "tests/property/random_draws.hpp"
 #include "tests/property/random_problem.hpp"
 #include "tests/support/effort.hpp"
 

@@ -11,9 +11,6 @@
 
 namespace qsmpc::testing {
 
-/// A draw from the interval.
-[[nodiscard]] double uniform(Generator& generator, double lower, double upper);
-
 struct Problem {
   std::string system;
   std::unique_ptr<const models::Dynamics> dynamics;

@@ -9,6 +9,7 @@
 
 #include "controller/planning/planner.hpp"
 #include "models/constants.hpp"
+#include "tests/property/random_draws.hpp"
 #include "tests/property/random_problem.hpp"
 #include "tests/support/effort.hpp"
 
