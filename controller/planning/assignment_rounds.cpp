@@ -76,13 +76,19 @@ void AssignmentRounds::make_search(Eigen::Index entries, Search& out) {
 }
 
 double AssignmentRounds::evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
-  const double cost = evaluator_.cost().evaluate(z, gradient);
+  const double cost =
+      coarse_ != nullptr ? coarse_->evaluate(z, gradient) : evaluator_.cost().evaluate(z, gradient);
   if (aim_ == Aim::kCost) return cost;
   if (aim_ == Aim::kAugmented) return cost + lagrangian_.add(z, gradient);
   risk_gradient_.resize(z.size());
   const double risk = evaluator_.risk()->log_total(z, risk_gradient_);
   gradient = cost_share_ * gradient + risk_gradient_;
   return cost_share_ * cost + risk;
+}
+
+/// The cost that is being minimised, without constraints.
+double AssignmentRounds::cost_of(const Eigen::VectorXd& z) {
+  return coarse_ != nullptr ? coarse_->evaluate(z) : evaluator_.cost().evaluate(z);
 }
 
 void AssignmentRounds::start(OcpSolver& solver, bool warm) const {
@@ -145,6 +151,8 @@ bool AssignmentRounds::asks_for_more(const Plan& candidate, PlanInProgress& plan
   }
   RiskConstraint* const risk = evaluator_.risk();
   if (risk == nullptr || candidate.risk.kept || !(candidate.risk.severity > 0.0)) return false;
+  // What no multiplier achieves is left to reduce_risk.
+  if (aim_ == Aim::kAugmented && lagrangian_.exhausted()) return false;
   // The held surrogate is now the candidate's. The first shortfall was under another plan's
   // surrogate, so it does not count.
   if (round > 0) risk->set_margin(risk->margin() + std::clamp(candidate.risk.severity, 0.0, 0.5));
@@ -167,12 +175,15 @@ bool AssignmentRounds::optimise(Search& search, int rounds, PlanInProgress& plan
       --n;  // no prediction was needed
       continue;
     }
-    predict_candidate(search.z, plan);
+    set_candidate(search.z, plan);
+    const bool predicted = predict_candidate(plan);
     stopwatch.add_to(plan.timing.propagate);
-    change_ = std::abs(plan.candidate->cost.total() / search.least - 1.0);
-    const double share = plan.warm ? kWarmShareOfChange : kColdShareOfChange;
-    tolerance_ = std::min(tolerance_, share * change_);
-    const bool accepted = !plan.evaluated || better(*plan.candidate, *plan.current);
+    if (predicted) {
+      change_ = std::abs(plan.candidate->cost.total() / search.least - 1.0);
+      const double share = plan.warm ? kWarmShareOfChange : kColdShareOfChange;
+      tolerance_ = std::min(tolerance_, share * change_);
+    }
+    const bool accepted = predicted && (!plan.evaluated || better(*plan.candidate, *plan.current));
     const bool more = asks_for_more(*plan.candidate, plan, n, rounds);
     if (accepted) plan.accept_candidate();
     if (plan.late()) plan.status = SolverStatus::kDeadline;
@@ -184,8 +195,8 @@ bool AssignmentRounds::optimise(Search& search, int rounds, PlanInProgress& plan
   return may_go_on();
 }
 
-/// Sets the candidate to the plan for the decision z.
-void AssignmentRounds::predict_candidate(const Eigen::VectorXd& z, PlanInProgress& plan) {
+/// Sets the candidate's policy to that of the decision z.
+void AssignmentRounds::set_candidate(const Eigen::VectorXd& z, PlanInProgress& plan) {
   const Eigen::MatrixXd& known = plan.current->policy.inputs;
   gain_change_ = plan.current->gain_change;
   if (z.size() > known.size()) {
@@ -193,7 +204,13 @@ void AssignmentRounds::predict_candidate(const Eigen::VectorXd& z, PlanInProgres
   }
   evaluator_.set_policy(z.head(known.size()).reshaped(known.rows(), known.cols()), gain_change_,
                         *plan.candidate);
+}
+
+/// Predicts the candidate unless its risk alone rules it out. Returns whether it did.
+bool AssignmentRounds::predict_candidate(PlanInProgress& plan) {
+  if (plan.evaluated) return evaluator_.predict_if_promising(*plan.candidate, *plan.current);
   evaluator_.predict_and_evaluate(*plan.candidate);
+  return true;
 }
 
 SolverOptions AssignmentRounds::solver_options(const PlanInProgress& plan) const {
@@ -234,9 +251,11 @@ bool AssignmentRounds::run_solver(Search& search, PlanInProgress& plan) {
   search.z.setZero();
   search.z.head(current.policy.inputs.size()) = current.policy.inputs.reshaped();
   if (evaluator_.constraints()) search.problem.constraints = evaluator_.constraints();
+  if (&search == &inputs_ && aim_ == Aim::kAugmented) coarse_ = evaluator_.coarse_about(current);
   const SolverResult& result = minimise(search, plan);
   plan.status = result.status;
-  search.least = aim_ == Aim::kCost ? result.value : evaluator_.cost().evaluate(result.z);
+  search.least = aim_ == Aim::kCost ? result.value : cost_of(result.z);
+  coarse_ = nullptr;
   if (!std::isfinite(result.value)) {
     // If there was no time for a single evaluation, there is no value, and the plan stays as it is.
     plan.failed = plan.evaluated && result.status == SolverStatus::kNumericalTrouble;
@@ -259,10 +278,10 @@ void AssignmentRounds::reduce_risk(PlanInProgress& plan) {
   aim_ = Aim::kRisk;
   for (int n = 0; n < kLeastRiskRounds && !plan.late(); ++n) {
     evaluator_.hold(*plan.current);
-    const double cost = std::abs(plan.current->cost.total());
-    cost_share_ = kCostBesideRisk / std::max(cost, 1e-12);
+    const Plan& current = *plan.current;
+    cost_share_ = kCostBesideRisk / std::max(std::abs(current.cost.total()), 1e-12);
     inputs_.solver->forget();
-    inputs_.z = plan.current->policy.inputs.reshaped();
+    inputs_.z = current.policy.inputs.reshaped();
     SolverOptions options = solver_options(plan);
     // The main optimisation may have used up its evaluations.
     options.max_evaluations = std::max(1, settings_.max_evaluations / 2);
@@ -270,13 +289,16 @@ void AssignmentRounds::reduce_risk(PlanInProgress& plan) {
     if (solver_entry(settings_.solver).takes_constraints) {
       inputs_.problem.constraints = evaluator_.constraints();
     }
+    coarse_ = evaluator_.coarse_about(current);
     const SolverResult& result = inputs_.solver->minimise(inputs_.problem, inputs_.z, options);
+    coarse_ = nullptr;
     plan.evaluations += result.evaluations;
     stopwatch.add_to(plan.timing.optimise);
     if (!std::isfinite(result.value)) break;
-    predict_candidate(result.z, plan);
+    set_candidate(result.z, plan);
+    const bool predicted = predict_candidate(plan);
     stopwatch.add_to(plan.timing.propagate);
-    const bool accepted = better(*plan.candidate, *plan.current);
+    const bool accepted = predicted && better(*plan.candidate, *plan.current);
     if (accepted) plan.accept_candidate();
     if (!accepted || plan.current->risk.severity <= 0.0) break;
   }
@@ -299,7 +321,8 @@ void AssignmentRounds::brake(PlanInProgress& plan) {
   evaluator_.set_braking(false);
   evaluator_.hold(*plan.current);
   if (!std::isfinite(result.value)) return;
-  predict_candidate(result.z, plan);
+  set_candidate(result.z, plan);
+  evaluator_.predict_and_evaluate(*plan.candidate);
   plan.accept_candidate();
   stopwatch.add_to(plan.timing.propagate);
 }

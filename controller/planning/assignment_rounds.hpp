@@ -51,6 +51,7 @@ class AssignmentRounds {
 
   void make_search(Eigen::Index entries, Search& out);
   void start(OcpSolver& solver, bool warm) const;
+  [[nodiscard]] double cost_of(const Eigen::VectorXd& z);
   [[nodiscard]] double evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient);
   [[nodiscard]] SolverOptions solver_options(const PlanInProgress& plan) const;
   [[nodiscard]] const SolverResult& minimise(Search& search, PlanInProgress& plan);
@@ -59,7 +60,8 @@ class AssignmentRounds {
                                    int& rounds) const;
   [[nodiscard]] bool optimise(Search& search, int rounds, PlanInProgress& plan);
   [[nodiscard]] bool run_solver(Search& search, PlanInProgress& plan);
-  void predict_candidate(const Eigen::VectorXd& z, PlanInProgress& plan);
+  void set_candidate(const Eigen::VectorXd& z, PlanInProgress& plan);
+  [[nodiscard]] bool predict_candidate(PlanInProgress& plan);
 
   const models::Dynamics& dynamics_;
   const PlannerSettings& settings_;
@@ -70,6 +72,7 @@ class AssignmentRounds {
   double tolerance_ = 0.0;         // lower limit of the solver's own
   double change_ = 0.0;            // relative, of the cost at the last new assignments
   Aim aim_ = Aim::kCost;
+  CoarseCost* coarse_ = nullptr;  // what the solver sees of the cost; null: all of it
   AugmentedLagrangian lagrangian_;
   double cost_share_ = 0.0;  // weight of the cost when the risk is minimised
   Eigen::VectorXd risk_gradient_;

@@ -55,21 +55,22 @@ double EffortChoice::excess_with(const Plan& plan, int step) {
   return evaluator_.excess_of(plan, policy_);
 }
 
+/// Climbs from the present step as long as that pays: upwards, to gentler gains, or else downwards.
 bool EffortChoice::try_steps(const Plan& plan, int lowest, int highest) {
-  int best = step_;
+  const int first = step_;
   double least = evaluator_.risk()->excess(plan.risk.stages) - kWorthIt;
-  for (int step = std::max(lowest, kLowestStep); step <= std::min(highest, kHighestStep); ++step) {
-    if (step == step_) continue;
-    const double excess = excess_with(plan, step);
-    if (excess < least) {
-      best = step;
-      least = excess;
+  const auto climb = [&](int direction, int end) {
+    while (step_ != end) {
+      const double excess = excess_with(plan, step_ + direction);
+      if (!(excess < least)) return;
+      step_ += direction;
+      least = excess - kWorthIt;
     }
-  }
-  evaluator_.policies().set_effort(effort_of(best));
-  const bool changed = best != step_;
-  step_ = best;
-  return changed;
+  };
+  climb(1, std::max(first, std::min(highest, kHighestStep)));
+  if (step_ == first) climb(-1, std::min(first, std::max(lowest, kLowestStep)));
+  evaluator_.policies().set_effort(effort_of(step_));
+  return step_ != first;
 }
 
 }  // namespace qsmpc::controller

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 
 #include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/cost/placed_target.hpp"
@@ -23,6 +24,17 @@ Eigen::MatrixXd noise_in_prediction(const PlannerSettings& settings) {
   return noise;
 }
 
+/// Less: a plan with the first risk is better, whatever the costs.
+std::weak_ordering compare_risk(const PlanRisk& risk, const PlanRisk& other) {
+  if (risk.kept != other.kept) {
+    return risk.kept ? std::weak_ordering::less : std::weak_ordering::greater;
+  }
+  const double severity = std::max(0.0, risk.severity);
+  const double other_severity = std::max(0.0, other.severity);
+  if (risk.kept || severity == other_severity) return std::weak_ordering::equivalent;
+  return severity < other_severity ? std::weak_ordering::less : std::weak_ordering::greater;
+}
+
 }  // namespace
 
 bool better(const Plan& plan, const Plan& other) {
@@ -30,12 +42,8 @@ bool better(const Plan& plan, const Plan& other) {
   const bool other_feasible = other.violation <= kConstraintTolerance;
   if (feasible != other_feasible) return feasible;
   if (!feasible && plan.violation != other.violation) return plan.violation < other.violation;
-  if (plan.risk.kept != other.risk.kept) return plan.risk.kept;
-  if (!plan.risk.kept) {
-    const double severity = std::max(0.0, plan.risk.severity);
-    const double other_severity = std::max(0.0, other.risk.severity);
-    if (severity != other_severity) return severity < other_severity;
-  }
+  const std::weak_ordering risk = compare_risk(plan.risk, other.risk);
+  if (risk != 0) return risk < 0;
   return plan.cost.total() < other.cost.total() || !std::isfinite(other.cost.total());
 }
 
@@ -59,6 +67,15 @@ PlanEvaluator::PlanEvaluator(const models::Dynamics& dynamics, const PlannerSett
       constraints_(cost_, settings.safe_set),
       z_(Eigen::Index{dynamics.input_dim()} * settings.horizon) {
   if (solver_entry(settings.solver).takes_constraints) constraint_set_.emplace();
+  if (!constraint_set_ && CoarseCost::pays(settings)) {
+    coarse_.emplace(dynamics, settings,
+                    HorizonCostTerms{.dynamics = dynamics,
+                                     .safe_set = settings.safe_set,
+                                     .cost = weights_,
+                                     .penalty = penalty_,
+                                     .noise_covariance = predicted_noise_,
+                                     .within_covariance = within_});
+  }
   set_limits(settings.risk, 0);
   if (settings.guide) guide_.emplace(dynamics, settings);
 }
@@ -124,11 +141,30 @@ void PlanEvaluator::set_policy(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
   policies_.make(gaussian_.mean, inputs, gain_change, plan.policy);
 }
 
+void PlanEvaluator::certify(Plan& plan) {
+  if (risk_) risk_->certify(gaussian_, plan.policy, plan.risk);
+}
+
 void PlanEvaluator::predict_and_evaluate(Plan& plan) {
   const auto start = std::chrono::steady_clock::now();
+  certify(plan);
+  predict_certified(plan);
+  prediction_time_ = std::chrono::steady_clock::now() - start;
+}
+
+bool PlanEvaluator::predict_if_promising(Plan& plan, const Plan& other) {
+  const auto start = std::chrono::steady_clock::now();
+  certify(plan);
+  // With constraints, a plan may also be better for its smaller violation.
+  if (!constraint_set_ && compare_risk(plan.risk, other.risk) > 0) return false;
+  predict_certified(plan);
+  prediction_time_ = std::chrono::steady_clock::now() - start;
+  return true;
+}
+
+void PlanEvaluator::predict_certified(Plan& plan) {
   predict(dynamics_, *propagator_, belief_.measure, plan.policy, settings_.run, scratch_,
           plan.prediction);
-  if (risk_) risk_->certify(gaussian_, plan.policy, plan.risk);
   freeze_assignments(plan.prediction, plan.policy);
   flatten(plan.policy);
   cost_.evaluate(z_);
@@ -142,7 +178,6 @@ void PlanEvaluator::predict_and_evaluate(Plan& plan) {
       plan.violation = std::max(0.0, particles.maxCoeff() - constraints_.margin());
     }
   }
-  prediction_time_ = std::chrono::steady_clock::now() - start;
 }
 
 void PlanEvaluator::freeze_assignments(const Prediction& prediction, const Policy& policy) {
@@ -151,7 +186,7 @@ void PlanEvaluator::freeze_assignments(const Prediction& prediction, const Polic
 }
 
 void PlanEvaluator::hold(Plan& plan) {
-  if (risk_) risk_->certify(gaussian_, plan.policy, plan.risk);
+  certify(plan);
   freeze_assignments(plan.prediction, plan.policy);
 }
 
@@ -166,6 +201,15 @@ bool PlanEvaluator::can_freeze(const Plan& plan) const {
 double PlanEvaluator::evaluate_frozen(const Plan& plan) {
   flatten(plan.policy);
   return cost_.evaluate(z_);
+}
+
+CoarseCost* PlanEvaluator::coarse_about(const Plan& plan) {
+  if (!coarse_) return nullptr;
+  flatten(plan.policy);
+  gradient_.resize(z_.size());
+  const double value = cost_.evaluate(z_, gradient_);
+  coarse_->hold(gaussian_, plan.policy);
+  return coarse_->match(z_, value, gradient_) ? &*coarse_ : nullptr;
 }
 
 void PlanEvaluator::flatten(const Policy& policy) { z_ = policy.inputs.reshaped(); }

@@ -10,6 +10,7 @@
 
 #include "controller/measure/measures.hpp"
 #include "controller/planning/belief_quantiser.hpp"
+#include "controller/planning/coarse_cost.hpp"
 #include "controller/planning/constraints/horizon_constraints.hpp"
 #include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/planning/guide/guide.hpp"
@@ -47,6 +48,10 @@ class PlanEvaluator {
   /// Predicts under plan.policy with new assignments, freezes them, and evaluates the cost. With
   /// risk limits, it also certifies the policy and holds its surrogate.
   void predict_and_evaluate(Plan& plan);
+  /// The same unless the certificate alone shows that the plan is not `better` than `other`, which
+  /// must be evaluated. Returns whether it was predicted; if not, only its risk is known, its
+  /// surrogate is held, and the held assignments stay as they are.
+  [[nodiscard]] bool predict_if_promising(Plan& plan, const Plan& other);
 
   /// Holds the assignments of `prediction`, which must stay alive and unchanged.
   void freeze_assignments(const Prediction& prediction, const Policy& policy);
@@ -56,6 +61,10 @@ class PlanEvaluator {
   [[nodiscard]] bool can_freeze(const Plan& plan) const;
   /// The plan's cost under the held assignments.
   [[nodiscard]] double evaluate_frozen(const Plan& plan);
+
+  /// The cost with few points, matched at the plan to the cost with all of them and the held
+  /// assignments; null if it does not pay, cannot be matched, or the solver takes constraints.
+  [[nodiscard]] CoarseCost* coarse_about(const Plan& plan);
 
   /// The risk limits; null if there are none.
   [[nodiscard]] RiskConstraint* risk() { return risk_ ? &*risk_ : nullptr; }
@@ -93,6 +102,8 @@ class PlanEvaluator {
   [[nodiscard]] std::chrono::duration<double> prediction_time() const { return prediction_time_; }
 
  private:
+  void certify(Plan& plan);
+  void predict_certified(Plan& plan);
   void flatten(const Policy& policy);
   void place_target();
 
@@ -106,11 +117,13 @@ class PlanEvaluator {
   std::unique_ptr<Propagator> propagator_;
   PolicyMaker policies_;
   HorizonCost cost_;
+  std::optional<CoarseCost> coarse_;
   HorizonConstraints constraints_;
   std::optional<ConstraintSet> constraint_set_;
   PredictionScratch scratch_;
   Eigen::VectorXd constraint_values_;
   Eigen::VectorXd z_;  // input_dim * horizon
+  Eigen::VectorXd gradient_;
   Gaussian gaussian_;  // the current belief
   std::optional<double> progress_;
   GaussianQuantisation belief_;

@@ -13,7 +13,7 @@ constexpr double kWeightShare = 0.02;
 // ρ grows by kGrowth if a minimisation leaves more than the share kEnough of the last violation.
 constexpr double kGrowth = 5.0;
 constexpr double kEnough = 0.3;
-// ρ stays within these shares of the cost.
+// ρ stays within these shares of the cost, and every λ below the second.
 constexpr double kLeastWeightShare = 1e-3;
 constexpr double kMostWeightShare = 10.0;
 // An inactive constraint warrants another minimisation if its multiplier times its slack exceeds
@@ -26,12 +26,14 @@ void AugmentedLagrangian::start(SummedConstraints& constraint, double cost, bool
   constraint_ = &constraint;
   last_violation_ = std::numeric_limits<double>::infinity();
   const double scale = std::max(std::abs(cost), 1e-12);
+  most_ = kMostWeightShare * scale;
   if (!warm || multipliers_.size() != constraint.count()) {
     multipliers_.setZero(constraint.count());
     weight_ = kWeightShare * scale;
     return;
   }
-  weight_ = std::clamp(weight_, kLeastWeightShare * scale, kMostWeightShare * scale);
+  weight_ = std::clamp(weight_, kLeastWeightShare * scale, most_);
+  multipliers_ = multipliers_.cwiseMin(most_);
 }
 
 void AugmentedLagrangian::shift(const StageRows& rows) {
@@ -56,9 +58,11 @@ bool AugmentedLagrangian::update(const Eigen::VectorXd& z, double tolerance) {
   for (Eigen::Index j = 0; j < values.size(); ++j) {
     if (values[j] < -tolerance) idle = std::max(idle, multipliers_[j] * -values[j]);
   }
-  multipliers_ = (multipliers_ + weight_ * values).cwiseMax(0.0);
   const bool kept = violation <= tolerance;
-  if (!kept && violation > kEnough * last_violation_) weight_ *= kGrowth;
+  // No multiplier keeps constraints that cannot be kept.
+  if (!kept && exhausted()) return false;
+  multipliers_ = (multipliers_ + weight_ * values).cwiseMax(0.0).cwiseMin(most_);
+  if (!kept && violation > kEnough * last_violation_) weight_ = std::min(kGrowth * weight_, most_);
   last_violation_ = violation;
   return !kept || idle > kIdlePush * weight_ / kWeightShare;
 }

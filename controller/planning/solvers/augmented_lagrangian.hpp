@@ -50,15 +50,22 @@ class AugmentedLagrangian {
   double add(const Eigen::VectorXd& z, Eigen::VectorXd& gradient);
 
   /// New multipliers after a minimisation that ended at z. Returns whether another one should
-  /// follow: a constraint is violated by more than `tolerance`, or an inactive one still has a
-  /// significant multiplier.
+  /// follow: a constraint is violated by more than `tolerance`, unless a multiplier is exhausted,
+  /// or an inactive one still has a significant multiplier.
   [[nodiscard]] bool update(const Eigen::VectorXd& z, double tolerance);
+
+  /// Whether a multiplier has reached its limit, ten times the cost: as far as this method can
+  /// tell, the constraints cannot be kept.
+  [[nodiscard]] bool exhausted() const {
+    return multipliers_.size() > 0 && multipliers_.maxCoeff() >= most_;
+  }
 
  private:
   SummedConstraints* constraint_ = nullptr;
   Eigen::VectorXd multipliers_;  // λ
   Eigen::VectorXd pushes_;       // max(0, λ + ρ c)
   double weight_ = 1.0;          // ρ
+  double most_ = 0.0;            // limit of ρ and of every λ
   double last_violation_ = 0.0;
 };
 

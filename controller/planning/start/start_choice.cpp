@@ -117,10 +117,14 @@ void StartChoice::take_best_minimum(PlanInProgress& plan) {
     if (plan.evaluated && plan.late()) break;
     Plan& one = plan.evaluated ? *plan.candidate : *plan.current;
     evaluator_.set_policy(*inputs, gain_change_, one);
-    evaluator_.predict_and_evaluate(one);
-    held = !plan.evaluated || better(one, *plan.current);
-    if (held && plan.evaluated) plan.accept_candidate();
-    plan.evaluated = true;
+    if (plan.evaluated) {
+      held = evaluator_.predict_if_promising(one, *plan.current) && better(one, *plan.current);
+      if (held) plan.accept_candidate();
+    } else {
+      evaluator_.predict_and_evaluate(one);
+      held = true;
+      plan.evaluated = true;
+    }
   }
   if (!held) evaluator_.hold(*plan.current);
 }

@@ -78,6 +78,22 @@ TEST_F(Multipliers, stay_where_no_constraint_is_of_a_stage_or_there_are_more_tha
   EXPECT_EQ(after({.begin = 1, .count = 8}), made);
 }
 
+TEST_F(Multipliers, are_exhausted_at_ten_times_the_cost_where_nothing_keeps_the_constraints) {
+  const VectorXd violations = VectorXd{{-1.0, 1.0, 0.5, 0.0, -2.0}};
+  lagrangian.start(constraint, 50.0, /*warm=*/false);
+  int updates = 0;
+  while (lagrangian.update(violations, 0.01)) {
+    ASSERT_LT(++updates, 20);
+    EXPECT_LE(multipliers_of(lagrangian, 5).maxCoeff(), 500.0);
+  }
+  EXPECT_TRUE(lagrangian.exhausted());
+  EXPECT_GT(updates, 2);
+  // The next plan may be able to keep them.
+  lagrangian.start(constraint, 100.0, /*warm=*/true);
+  EXPECT_FALSE(lagrangian.exhausted());
+  EXPECT_TRUE(lagrangian.update(violations, 0.01));
+}
+
 TEST(RiskConstraint, its_stage_rows_are_those_of_the_limit_of_every_stage) {
   const auto car = dubins_car();
   const PlannerSettings settings = block_settings();
