@@ -35,7 +35,15 @@ void EffortChoice::reset() {
 }
 
 bool EffortChoice::search(const Plan& plan) {
-  return applies() && try_steps(plan, kLowestStep, kHighestStep);
+  if (!applies()) return false;
+  const int first = step_;
+  double least = least_worth_it(plan);
+  // Every other step, then both neighbours of the best.
+  for (int step = kLowestStep; step <= kHighestStep; step += 2) try_step(plan, step, least);
+  const int best = step_;
+  try_step(plan, best - 1, least);
+  try_step(plan, best + 1, least);
+  return settle(first);
 }
 
 bool EffortChoice::search_nearby(const Plan& plan) {
@@ -55,20 +63,33 @@ double EffortChoice::excess_with(const Plan& plan, int step) {
   return evaluator_.excess_of(plan, policy_);
 }
 
-/// Climbs from the present step as long as that pays: upwards, to gentler gains, or else downwards.
+/// The excess below which another effort is worth it.
+double EffortChoice::least_worth_it(const Plan& plan) {
+  return evaluator_.risk()->excess(plan.risk.stages) - kWorthIt;
+}
+
+/// Moves to the step if it is another one on the ladder and its excess is below `least`, which then
+/// becomes this excess.
+void EffortChoice::try_step(const Plan& plan, int step, double& least) {
+  if (step == step_ || step < kLowestStep || step > kHighestStep) return;
+  const double excess = excess_with(plan, step);
+  if (!(excess < least)) return;
+  step_ = step;
+  least = excess;
+}
+
+/// Tries all steps from `lowest` to `highest`. Returns whether the step has changed.
 bool EffortChoice::try_steps(const Plan& plan, int lowest, int highest) {
   const int first = step_;
-  double least = evaluator_.risk()->excess(plan.risk.stages) - kWorthIt;
-  const auto climb = [&](int direction, int end) {
-    while (step_ != end) {
-      const double excess = excess_with(plan, step_ + direction);
-      if (!(excess < least)) return;
-      step_ += direction;
-      least = excess - kWorthIt;
-    }
-  };
-  climb(1, std::max(first, std::min(highest, kHighestStep)));
-  if (step_ == first) climb(-1, std::min(first, std::max(lowest, kLowestStep)));
+  double least = least_worth_it(plan);
+  for (int step = lowest; step <= highest; ++step) {
+    if (step != first) try_step(plan, step, least);
+  }
+  return settle(first);
+}
+
+/// Sets the effort of the step. Returns whether that differs from `first`.
+bool EffortChoice::settle(int first) {
   evaluator_.policies().set_effort(effort_of(step_));
   return step_ != first;
 }

@@ -21,8 +21,9 @@ class EffortChoice {
   /// Back to an effort of 1, that of the cost itself.
   void reset();
 
-  /// Certifies the inputs of `plan` with every effort of the ladder, and uses the best one for all
-  /// gains from now on. Returns whether the effort changed; `plan` keeps its gains.
+  /// Certifies the inputs of `plan` with every other effort of the ladder, then with the neighbours
+  /// of the best, and uses the best one for all gains from now on. Returns whether the effort
+  /// changed; `plan` keeps its gains.
   bool search(const Plan& plan);
 
   /// The same, but only with both neighbours of the present effort.
@@ -33,7 +34,10 @@ class EffortChoice {
   bool follow(const Plan& plan);
 
  private:
-  bool try_steps(const Plan& plan, int lowest, int highest);
+  [[nodiscard]] double least_worth_it(const Plan& plan);
+  void try_step(const Plan& plan, int step, double& least);
+  [[nodiscard]] bool try_steps(const Plan& plan, int lowest, int highest);
+  [[nodiscard]] bool settle(int first);
   [[nodiscard]] double excess_with(const Plan& plan, int step);
 
   const PlannerSettings& settings_;

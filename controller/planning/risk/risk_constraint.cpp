@@ -84,6 +84,7 @@ void RiskConstraint::certify(const Gaussian& belief, const Policy& policy, PlanR
   model_.hold(motion, bounds.surrogates);
   take_stages(bounds, out.stages);
   out.plan = std::min(1.0, sum_of(out.stages));
+  out.counted = false;
   model_.calibrate(out.stages);
   const Eigen::VectorXd z = policy.inputs.reshaped();
   const double margin = margin_;
@@ -106,6 +107,8 @@ double RiskConstraint::excess(const Gaussian& belief, const Policy& policy) cons
 bool RiskConstraint::count_entries(const Gaussian& belief, const Policy& policy,
                                    PlanRisk& risk) const {
   if (risk.kept || !std::isfinite(limits_.plan) || !(risk.plan > limits_.plan)) return risk.kept;
+  if (risk.counted) return false;
+  risk.counted = true;
   const double entries = sum_of(
       first_entry_bounds(unsafe_, surrogate_bounds(motion_of(belief, policy), unsafe_,
                                                    CertificateEffort::kLeast, settings_.run)));
