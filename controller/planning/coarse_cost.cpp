@@ -11,7 +11,7 @@ namespace {
 // Largest number of points of the belief, of parts of the noise, and of points kept.
 constexpr int kFewPoints = 12;
 // With at least this many times as many points kept, the coarse cost pays.
-constexpr int kManyTimes = 2;
+constexpr int kManyTimes = 4;
 
 PlannerSettings with_few_points(PlannerSettings settings) {
   settings.state_points = std::min(settings.state_points, kFewPoints);

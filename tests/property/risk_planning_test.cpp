@@ -39,9 +39,10 @@ LimitedProblem limited_problem(Generator& generator) {
   settings.horizon = 1 + static_cast<int>(uniform(generator, 0.0, 3.999));
   settings.closed_loop = uniform(generator, 0.0, 1.0) < 0.5;
   settings.feedback_effort = 10.0;
-  settings.state_points = 30;
+  // With the many, solvers see the coarse cost.
+  settings.state_points = settings.horizon % 2 == 0 ? 60 : 30;
   settings.noise_points = 20;
-  settings.compressed_points = 30;
+  settings.compressed_points = settings.state_points;
   settings.max_evaluations = 300;
   settings.noise_covariance = Eigen::Vector3d(1e-3, 1e-3, 1e-4).asDiagonal();
   problem.belief = {.mean = Eigen::Vector3d(0.0, 0.0, uniform(generator, -0.5, 0.5)),

@@ -133,9 +133,9 @@ TEST(CoarseCost, is_made_for_many_points_and_solvers_without_constraints) {
     evaluator.predict_and_evaluate(plan);
     return evaluator.coarse_about(plan) != nullptr;
   };
-  EXPECT_TRUE(is_made(24, "lbfgs"));
-  EXPECT_FALSE(is_made(23, "lbfgs"));
-  EXPECT_FALSE(is_made(24, "slsqp"));
+  EXPECT_TRUE(is_made(48, "lbfgs"));
+  EXPECT_FALSE(is_made(47, "lbfgs"));
+  EXPECT_FALSE(is_made(48, "slsqp"));
 }
 
 }  // namespace coarse_cost_test

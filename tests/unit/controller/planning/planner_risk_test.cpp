@@ -105,7 +105,7 @@ TEST(PlannerRisk, the_model_alone_is_planned_for_where_its_error_leaves_no_plan)
 
 TEST(PlannerRisk, the_error_counts_where_a_plan_keeps_its_limit_with_it) {
   const auto car = dubins_car();
-  PlannerSettings settings = limited(0.1);
+  PlannerSettings settings = limited(0.05);
   settings.model_error = model_error_of_size(Eigen::Vector3d(1e-4, 1e-4, 1e-4));
   settings.otherwise = RiskOtherwise::kModel;
   Planner planner(*car, settings);
