@@ -105,7 +105,7 @@ void kill_client(const std::string& host) {
   }
 }
 
-TEST_F(Ssh, loses_a_worker_whose_connection_dies_and_goes_on_with_the_others) {
+TEST_F(Ssh, loses_a_worker_whose_connection_dies_and_continues_with_the_others) {
   const auto launcher = harness::make_launcher(options("one,two"));
   const std::string record = launcher->start(request(
       "test $2 = 1 && { echo $$ >'" + (folder / "worker") + "'; : >'" + (folder / "ready") +

@@ -247,7 +247,7 @@ TEST(Campaign, a_second_process_is_told_who_holds_the_folder) {
   EXPECT_EQ(nlohmann::json::parse(testing::read_text(out + "/campaign.json"))["done"], 120);
 }
 
-TEST(Campaign, ctrl_c_keeps_what_is_done_and_says_how_to_go_on) {
+TEST(Campaign, ctrl_c_keeps_what_is_done_and_says_how_to_resume) {
   const TemporaryFolder folder;
   const std::string file = testing::short_campaign(folder, 200);
   const std::string out = folder / "out";
@@ -309,7 +309,7 @@ TEST(Campaign, shards_merge_into_what_one_machine_drives) {
             testing::files_below(folder / "whole", ".h5"));
 }
 
-TEST(Campaign, a_changed_campaign_is_refused_unless_told) {
+TEST(Campaign, a_changed_campaign_is_refused_without_update) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   ASSERT_EQ(campaign(testing::short_campaign(folder, 3), out).exit_code, 0);
@@ -333,7 +333,7 @@ TEST(Campaign, a_dry_run_shows_the_plan_and_writes_nothing) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-TEST(Campaign, fails_on_what_the_user_asked_to_be_told) {
+TEST(Campaign, exits_with_failure_on_the_outcomes_of_fail_on) {
   const TemporaryFolder folder;
   const std::string file = testing::short_campaign(folder, 1);
   EXPECT_EQ(campaign(file, folder / "out").exit_code, 0);
@@ -348,7 +348,7 @@ TEST(Campaign, fails_on_what_the_user_asked_to_be_told) {
   EXPECT_EQ(campaign(limited, folder / "limited", {"--fail-on", "risk_exceeded"}).exit_code, 1);
 }
 
-TEST(Campaign, wrong_usage_is_told_in_one_line) {
+TEST(Campaign, wrong_usage_is_reported_in_one_line) {
   const TemporaryFolder folder;
   const std::string file = testing::short_campaign(folder, 1);
   const std::string out = folder / "out";

@@ -198,7 +198,7 @@ TEST_F(Cluster, killed_with_all_tasks_at_any_moment_and_resumed_it_ends_as_if_it
   }
 }
 
-TEST_F(Cluster, ctrl_c_ends_the_tasks_and_resume_goes_on) {
+TEST_F(Cluster, ctrl_c_stops_the_tasks_and_resume_continues) {
   drive_whole(20);
   ProcessOptions options;
   options.meanwhile = [&](pid_t process) {
@@ -332,7 +332,7 @@ TEST_F(Cluster, tasks_stop_where_one_process_stops) {
   expect_whole();
 }
 
-TEST_F(Cluster, what_does_not_go_together_is_told_in_one_line) {
+TEST_F(Cluster, incompatible_options_are_reported_in_one_line) {
   file = testing::short_campaign(folder, 2);
   const auto expect_refused = [](const ProcessResult& result, const std::string& message) {
     EXPECT_EQ(result.exit_code, 2) << result.errors;

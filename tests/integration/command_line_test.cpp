@@ -44,7 +44,7 @@ TEST(CommandLine, suggests_the_nearest_option) {
                  "found another, expected no more arguments");
 }
 
-TEST(CommandLine, refuses_a_seed_that_is_none) {
+TEST(CommandLine, refuses_an_invalid_seed) {
   for (const char* command : {"run", "predict", "compare"}) {
     expect_refused({command, "dubins_corridor", "--seed", "-1"},
                    "--seed: found -1, expected a whole number from 0 to 18446744073709551615");
@@ -98,7 +98,7 @@ TEST(Init, writes_a_commented_scenario_that_is_valid_and_reaches_its_target) {
   }
 }
 
-TEST(Export, writes_tables_beside_the_trace_or_where_it_is_told) {
+TEST(Export, writes_tables_beside_the_trace_or_into_the_given_folder) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   ASSERT_EQ(run_qsmpc({"run", "dubins_corridor", "--set", "limit.steps=2", "--set",

@@ -142,7 +142,7 @@ TEST(Contest, that_was_killed_again_and_again_ends_as_one_that_was_not) {
   EXPECT_EQ(testing::results_of(folder / "again"), testing::results_of(folder / "once"));
 }
 
-TEST(Contest, that_has_changed_is_refused_unless_it_shall_go_on) {
+TEST(Contest, that_has_changed_is_refused_without_update) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
   ASSERT_EQ(contest(short_contest(folder, 2), out, {"--quiet"}).exit_code, 0);

@@ -77,7 +77,7 @@ TEST(OutsideController, is_named_on_the_command_line_from_the_working_folder) {
   EXPECT_EQ(result.exit_code, 0) << result.errors;
 }
 
-TEST(OutsideController, that_fails_is_said_in_one_line_with_code_1) {
+TEST(OutsideController, that_fails_is_reported_in_one_line_with_code_1) {
   const TemporaryFolder folder;
   const std::string scenario = scenario_in(folder, "{mode: exit}");
   const ProcessResult result =
@@ -117,7 +117,7 @@ TEST(OutsideController, that_is_not_there_is_refused_before_anything_is_driven) 
 }
 
 /// The failing variants end as faults, the others complete; the same with any number of jobs.
-TEST(OutsideController, in_campaigns_fails_by_itself_and_the_campaign_goes_on) {
+TEST(OutsideController, in_campaigns_fails_alone_and_the_campaign_continues) {
   const TemporaryFolder folder;
   (void)scenario_in(folder);
   const std::string campaign =

@@ -95,7 +95,7 @@ TEST(Predict, compares_all_methods_with_the_simulated_paths) {
   }
 }
 
-TEST(Predict, refuses_methods_that_are_none_and_stages_that_are_not_predicted) {
+TEST(Predict, refuses_unknown_methods_and_stages_that_are_not_predicted) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::vector<std::string>& more) {
     const ProcessResult result = predict("dubins_corridor", folder.path(), more);

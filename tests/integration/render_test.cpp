@@ -145,7 +145,7 @@ TEST_F(Render, a_still_is_a_png_of_the_size_asked_for) {
 
 // The address sanitizer reserves terabytes for its shadow memory before the program starts.
 #if !QSMPC_ADDRESS_SANITIZER
-TEST_F(Render, too_little_address_space_is_told_in_a_line) {
+TEST_F(Render, too_little_address_space_is_reported_in_one_line) {
   for (const long limit : {450'000'000L, 500'000'000L, 600'000'000L, 800'000'000L}) {
     const ProcessOptions options{.address_space = limit};
     for (const ProcessResult& result :

@@ -119,7 +119,7 @@ TEST(Reproduce, numbers_do_not_depend_on_the_threads) {
   EXPECT_EQ(rows("one", "1"), rows("two", "2"));
 }
 
-TEST(Reproduce, a_full_disk_is_said) {
+TEST(Reproduce, a_full_disk_is_reported) {
   const TemporaryFolder folder;
   const ProcessResult result =
       reproduce(folder.path(), {"figure-4-1", "--quiet"}, {.file_size_limit = 200});

@@ -165,7 +165,7 @@ TEST(Run, tells_that_a_limit_of_the_risk_was_exceeded_where_it_was_asked_to) {
   EXPECT_EQ(exit_code("{}", "risk_exceeded"), 0);
 }
 
-TEST(Run, a_drive_that_is_unsafe_fails_unless_told_otherwise) {
+TEST(Run, an_unsafe_drive_exits_with_failure_unless_told_otherwise) {
   const TemporaryFolder folder;
   const auto exit_code = [&](const char* safe_set, std::vector<std::string> more) {
     std::vector<std::string> arguments = {"--no-video", "--force",
@@ -237,7 +237,7 @@ INSTANTIATE_TEST_SUITE_P(
                              "broken.yaml:5: controller.horizon: found 0, expected "}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
-TEST(Run, refuses_what_is_no_scenario_at_all) {
+TEST(Run, refuses_what_is_not_a_scenario_at_all) {
   const TemporaryFolder folder;
   std::string noise(10 << 20, '\0');
   for (std::size_t i = 0; i < noise.size(); ++i)
@@ -295,7 +295,7 @@ TEST(Run, an_interrupt_keeps_the_trace_and_a_playable_video) {
   EXPECT_EQ(partial_files(folder.path()), 0);
 }
 
-TEST(Run, an_interrupt_while_the_video_is_drawn_is_told_and_exits_with_130) {
+TEST(Run, an_interrupt_while_the_video_is_drawn_is_reported_and_exits_with_130) {
   const TemporaryFolder folder;
   const std::string video = folder.path() + "/episode.mp4";
   // Many frames: drawing takes much longer than the signal's delivery.
@@ -371,7 +371,7 @@ TEST(Run, a_killed_episode_can_be_rendered_and_reported_as_far_as_it_came) {
   EXPECT_THAT(probe(folder.path() + "/episode.mp4"), ::testing::StartsWith("h264,160,90,"));
 }
 
-TEST(Run, a_fault_of_the_plant_is_an_outcome_with_mujocos_words) {
+TEST(Run, a_fault_of_the_plant_is_an_outcome_with_mujocos_message) {
   const TemporaryFolder folder;
   // With these gains the robot's wheels spin until MuJoCo fails.
   const ProcessResult result = run_qsmpc(

@@ -96,7 +96,7 @@ TEST_F(WorstEpisodes, get_their_pages_and_videos_driven_again_where_no_trace_is_
   EXPECT_EQ(fs::last_write_time(video), before) << "a video that is there is not made again";
 }
 
-TEST_F(WorstEpisodes, are_those_of_a_campaign_that_nobody_drives) {
+TEST_F(WorstEpisodes, are_shown_for_a_campaign_that_is_not_running) {
   ASSERT_NO_FATAL_FAILURE(drive("none"));
   {
     const FolderLock lock(out_);

@@ -147,7 +147,7 @@ TEST(BrokenCampaign, a_setting_that_breaks_another_value_of_the_scenario_is_name
        "with this setting, initial_state.mean: x = 0, outside of the bounds 1 < x < 9", ""});
 }
 
-TEST(BrokenCampaign, every_wrong_value_is_told_once_by_the_validation) {
+TEST(BrokenCampaign, every_wrong_value_is_reported_once_by_validation) {
   const CampaignFolder folder;
   const auto problems = folder.problems(
       "scenarios: [a.yaml, b.yaml]\nseeds: {}\n"
@@ -254,7 +254,7 @@ TEST(HostileCampaign, long_values_in_many_variants_are_refused_by_their_size) {
   EXPECT_THAT(folder.problem(text + "]}\n").expected, HasSubstr("16777216 bytes"));
 }
 
-TEST(HostileCampaign, a_campaign_is_no_scenario_of_itself) {
+TEST(HostileCampaign, a_campaign_is_not_a_scenario_of_itself) {
   const CampaignFolder folder;
   const auto problems = folder.problems("scenario: c.yaml\nseeds: [0]\n");
   std::vector<std::string> keys;
@@ -265,7 +265,7 @@ TEST(HostileCampaign, a_campaign_is_no_scenario_of_itself) {
   EXPECT_THAT(keys, ::testing::IsSupersetOf({"scenario, an unknown key", "name, nothing"}));
 }
 
-TEST(HostileCampaign, what_is_no_yaml_is_refused_in_a_word) {
+TEST(HostileCampaign, what_is_not_yaml_is_refused_in_one_line) {
   const CampaignFolder folder;
   EXPECT_THAT(folder.problem("scenario: [\n").found, HasSubstr("not YAML"));
   EXPECT_THAT(folder.problem("").found, HasSubstr("empty"));

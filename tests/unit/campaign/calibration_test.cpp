@@ -29,7 +29,7 @@ TEST(CalibrationBin, has_half_decades_and_one_bin_for_almost_nothing) {
   }
 }
 
-TEST(CalibrationBin, what_is_no_probability_promises_nothing) {
+TEST(CalibrationBin, a_value_that_is_not_a_probability_promises_nothing) {
   for (const double value : {1.5, std::numeric_limits<double>::quiet_NaN(), -0.1,
                              std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(calibration_bin(value), kCalibrationBins - 1) << value;

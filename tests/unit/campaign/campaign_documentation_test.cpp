@@ -20,7 +20,7 @@ std::string example() {
   return text.substr(begin, text.find("```", begin) - begin);
 }
 
-TEST(CampaignDocumentation, its_example_is_what_is_said_of_it) {
+TEST(CampaignDocumentation, its_example_is_as_described) {
   const CampaignFolder folder;
   (void)folder.file("my_scenario.yaml", minimal_text);
   const Campaign campaign = folder.load(example());

@@ -83,7 +83,7 @@ TEST(CampaignFile, expands_scenarios_slowest_then_variants_then_the_grid_then_pl
   EXPECT_EQ(campaign.variants[4].resolved.plant.kind, "mujoco");
 }
 
-TEST(CampaignFile, names_say_only_what_differs) {
+TEST(CampaignFile, names_contain_only_what_differs) {
   const CampaignFolder folder;
   const std::string seeds = "seeds: [0]\n";
   EXPECT_THAT(names_of(folder.load("scenario: dubins_trap\nplants: [analytic, mujoco]\n" + seeds)),
@@ -183,7 +183,7 @@ TEST(CampaignFile, seeds_reach_to_the_largest_that_a_store_can_hold) {
   EXPECT_EQ(campaign.seeds.at(1), 9223372036854775807U);
 }
 
-TEST(CampaignFile, is_told_from_a_scenario_by_its_keys) {
+TEST(CampaignFile, is_distinguished_from_a_scenario_by_its_keys) {
   const CampaignFolder folder;
   EXPECT_FALSE(is_campaign_file(folder / "a.yaml"));
   EXPECT_TRUE(is_campaign_file(folder.campaign("scenario: a.yaml\n")));

@@ -65,7 +65,7 @@ TEST(FolderLock, is_free_again_when_its_holder_was_killed) {
   EXPECT_NO_THROW(FolderLock{folder.path()});
 }
 
-TEST(FolderLock, times_are_told_in_utc) {
+TEST(FolderLock, times_are_in_utc) {
   EXPECT_EQ(utc_text(0), "1970-01-01 00:00:00 UTC");
   EXPECT_EQ(utc_text(951'827'696), "2000-02-29 12:34:56 UTC");
 }
@@ -78,7 +78,9 @@ TEST(FolderLock, does_not_write_through_a_symbolic_link) {
   EXPECT_EQ(std::filesystem::file_size(precious), 3U);
 }
 
-TEST(FolderLock, says_where_it_cannot_be) { EXPECT_THROW(FolderLock{"/no/such/folder"}, IoError); }
+TEST(FolderLock, names_the_folder_that_cannot_be_locked) {
+  EXPECT_THROW(FolderLock{"/no/such/folder"}, IoError);
+}
 
 }  // namespace folder_lock_test
 }  // namespace qsmpc::harness

@@ -128,7 +128,7 @@ Json without(Json json, const std::string& key) {
   return json;
 }
 
-TEST(CampaignStatistics, are_those_of_the_rows_of_the_store) {
+TEST(CampaignStatistics, match_the_rows_of_the_store) {
   const CampaignStatistics statistics = filled_statistics();
   ASSERT_EQ(statistics.variants.size(), 2U);
   EXPECT_EQ(statistics.campaign.episodes, 2 * kSeeds);

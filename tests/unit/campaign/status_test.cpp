@@ -79,7 +79,7 @@ TEST(ProgressNote, tells_rate_time_left_and_outcomes) {
             "0.5 episodes/s, 1 min 20 s left, reached 54, collision 2, timeout 3, left_safe_set 1");
 }
 
-TEST(Durations, are_told_in_their_two_largest_units) {
+TEST(Durations, are_shown_in_their_two_largest_units) {
   EXPECT_EQ(duration_text(0.0), "0 ms");
   EXPECT_EQ(duration_text(0.85), "850 ms");
   EXPECT_EQ(duration_text(12.4), "12 s");

@@ -57,7 +57,7 @@ TEST(StopRule, stops_at_the_first_number_of_seeds_at_which_every_interval_is_nar
   EXPECT_EQ(rule.complete(), expected);
 }
 
-TEST(StopRule, says_the_same_in_whatever_order_it_is_told) {
+TEST(StopRule, decides_the_same_in_whatever_order_episodes_arrive) {
   const std::vector<std::vector<bool>> events = made_events();
   const std::int64_t expected = plain_answer(events);
   std::vector<std::pair<std::int64_t, std::size_t>> order;
@@ -90,7 +90,7 @@ TEST(StopRule, waits_for_a_seed_that_is_missing_whatever_is_known_of_later_ones)
   EXPECT_GT(confidence_sequence(0, stop - 1, 0.9).upper, 0.5);
 }
 
-TEST(StopRule, an_episode_that_is_told_twice_counts_once) {
+TEST(StopRule, an_episode_that_is_reported_twice_counts_once) {
   StopRule rule(common_criterion, 1, kSeeds);
   rule.add(0, 0, true);
   rule.add(1, 0, true);
@@ -107,7 +107,7 @@ TEST(StopRule, does_not_stop_where_all_seeds_are_too_few) {
   EXPECT_FALSE(rule.stops_after());
 }
 
-TEST(StopRule, refuses_seeds_and_variants_that_there_are_none_of) {
+TEST(StopRule, refuses_unknown_seeds_and_variants) {
   EXPECT_THROW(StopRule(common_criterion, 0, 5), std::invalid_argument);
   StopRule rule(common_criterion, 2, 5);
   EXPECT_THROW(rule.add(5, 0, false), std::invalid_argument);

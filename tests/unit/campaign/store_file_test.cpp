@@ -48,7 +48,7 @@ TEST_F(StoreFileTest, refuses_the_file_of_another_program) {
   EXPECT_THROW(StoreReader(folder.path()), InputError);
 }
 
-TEST_F(StoreFileTest, refuses_a_file_that_is_no_database) {
+TEST_F(StoreFileTest, refuses_a_file_that_is_not_a_database) {
   std::ofstream(path()) << std::string(5000, 'x');
   EXPECT_THROW(open(testing::quick_campaign()), IoError);
   EXPECT_THROW(StoreReader(folder.path()), IoError);

@@ -53,7 +53,7 @@ TEST(StorePeriods, are_json_that_sqlite_reads) {
   EXPECT_EQ(unsafe_text(periods), "[1,2]");
 }
 
-TEST(StorePeriods, refuses_texts_that_are_none) {
+TEST(StorePeriods, refuses_invalid_texts) {
   std::vector<PeriodRow> periods;
   std::vector<double> times;
   for (const char* text : {"", "[", "[[1,2]", "[[1,2]].", "[[1]]", "[1,2]", "[[1,2],]", "[[a,2]]",

@@ -119,7 +119,7 @@ TEST_F(StoreTest, never_holds_an_episode_twice) {
   EXPECT_EQ(rows_of(0).size(), 1U);
 }
 
-TEST_F(StoreTest, replaces_an_episode_with_its_periods_when_told) {
+TEST_F(StoreTest, replaces_an_episode_with_its_periods_when_asked) {
   Store store = open(testing::quick_campaign());
   store.add(testing::example_row(0, 5, "fault"), false);
   EpisodeRow shorter = testing::example_row(0, 5);
@@ -142,7 +142,7 @@ TEST_F(StoreTest, a_reader_sees_one_state_while_episodes_are_added) {
 
 // Rows of versions with a single outcome for both parts of the unsafe set, in which a drive that
 // continued after being unsafe was named by how it ended.
-TEST_F(StoreTest, former_drives_that_were_unsafe_have_the_former_word) {
+TEST_F(StoreTest, old_drives_that_were_unsafe_have_the_old_outcome_name) {
   Store store = open(testing::quick_campaign(6));
   const auto add = [&](std::uint64_t seed, const char* outcome, bool unsafe) {
     EpisodeRow row = testing::example_row(0, seed, outcome);

@@ -74,7 +74,7 @@ TEST(VariantFamilies, a_variant_that_is_not_there_is_refused_with_what_is) {
                   .expected = "no variants or grid"});
 }
 
-TEST(VariantFamilies, of_very_many_variants_some_are_told) {
+TEST(VariantFamilies, of_very_many_variants_some_are_listed) {
   std::string values = "1";
   for (int n = 2; n <= 200; ++n) values += fmt::format(", {}", n);
   const CampaignFolder folder;
@@ -94,7 +94,7 @@ TEST(VariantFamilies, a_variant_is_once_in_a_family) {
                   .expected = "each once"});
 }
 
-TEST(VariantFamilies, what_is_no_mapping_of_names_to_lists_is_refused) {
+TEST(VariantFamilies, what_is_not_a_mapping_of_names_to_lists_is_refused) {
   const std::string key = "figure.risk_against_cost";
   expect_refused(
       four_lines + "  risk_against_cost: [w2]\n",

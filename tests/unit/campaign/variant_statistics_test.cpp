@@ -62,7 +62,7 @@ TEST(VariantTally, has_a_rate_with_limits_of_each_outcome) {
   EXPECT_EQ(statistics.fault.events, 0);
 }
 
-TEST(ListedOutcomes, have_the_former_word_only_where_it_is_needed) {
+TEST(ListedOutcomes, have_the_old_outcome_name_only_where_needed) {
   VariantTally tally;
   for (const std::string& outcome : outcome_names()) tally.add(row(outcome, 1.0, 0.1));
   std::vector<VariantStatistics> variants = {tally.result()};

@@ -164,7 +164,7 @@ TEST_F(LeaseQueues, let_one_take_over_who_took_over_and_is_lost_as_well) {
   EXPECT_EQ(third->claim(), 0);
 }
 
-TEST_F(LeaseQueues, compare_no_clocks) {
+TEST_F(LeaseQueues, do_not_compare_clocks) {
   const auto ahead = queue({.task = 1}, 1, hours(7));
   ASSERT_EQ(ahead->claim(), 0);
   for (const auto& entry : fs::directory_iterator(cluster_path(folder.path(), kClaimsFolder))) {

@@ -37,7 +37,7 @@ TEST(ContestPlan, places_every_controller_in_every_cell) {
   EXPECT_EQ(contest.name_of(contest.cells()[7]), "dubins_corridor, mujoco_car, noise 3");
 }
 
-TEST(ContestPlan, noise_is_a_factor_of_the_covariance_that_the_controllers_are_told) {
+TEST(ContestPlan, noise_scales_the_covariance_that_the_controllers_receive) {
   const testing::ContestFolder folder;
   const LoadedContest loaded = folder.load(contest_text("noise: [0, 1, 2.5]\n"));
   const Eigen::MatrixXd own = testing::quick_scenario().disturbance.covariance;

@@ -76,7 +76,7 @@ TEST(ContestFile, controllers_may_not_differ_in_the_problem) {
                 "controller.horizon, expected the same for all"));
 }
 
-TEST(ContestFile, seeds_of_the_search_are_none_of_the_contest) {
+TEST(ContestFile, seeds_of_the_search_differ_from_those_of_the_contest) {
   const auto tuned_on = [](const std::string& seeds, const std::string& drives) {
     return folder().problems(
         "controllers: {a: {}, b: {}}\nscenarios: [quick.yaml]\nseeds: " + drives +

@@ -156,7 +156,7 @@ TEST_F(Standings, have_the_times_of_the_timed_drives_alone) {
   EXPECT_EQ(results(false).overall[1].times.periods, 0);
 }
 
-TEST_F(Standings, are_told_in_words_that_the_numbers_bear_out) {
+TEST_F(Standings, are_described_in_words_that_the_numbers_bear_out) {
   const ContestResults all = results();
   EXPECT_EQ(contest_headline(all),
             "Fewest unsafe drives: careful (0 %). Cheapest where both arrive: <bold>, 10 % below "
@@ -171,7 +171,7 @@ TEST_F(Standings, are_told_in_words_that_the_numbers_bear_out) {
             "its risk (expected 0.25 unsafe periods per drive).");
 }
 
-TEST_F(Standings, that_differ_by_chance_are_told_as_ties) {
+TEST_F(Standings, that_differ_by_chance_are_reported_as_ties) {
   ContestResults all = results();
   Versus& versus = *all.overall[1].versus;
   versus.unsafe.p_value = 0.5;

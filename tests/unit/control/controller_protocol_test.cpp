@@ -143,7 +143,7 @@ TEST_F(Answers, that_are_inputs_within_the_bounds_are_taken_as_they_are) {
             Eigen::Vector2d(1.0, -0.25));
 }
 
-TEST_F(Answers, that_are_plans_have_no_gains_unless_they_say_some) {
+TEST_F(Answers, that_are_plans_have_no_gains_unless_given) {
   const ControllerAnswer open = read(R"({"plan": {"inputs": [[0, 1], [1, 0]]}})", 2);
   EXPECT_EQ(open.policy.inputs.col(0), Eigen::Vector2d(0, 1));
   ASSERT_EQ(open.policy.gains.size(), 2U);
@@ -156,7 +156,7 @@ TEST_F(Answers, that_are_plans_have_no_gains_unless_they_say_some) {
   EXPECT_EQ(closed.status, controller::SolverStatus::kDeadline);
 }
 
-TEST_F(Answers, say_what_they_believe_only_if_they_want_to) {
+TEST_F(Answers, report_a_belief_only_if_they_choose_to) {
   EXPECT_EQ(read(R"({"input": [0, 0]})").believed, std::nullopt);
   EXPECT_EQ(read(R"({"input": [0, 0], "believed": null})").believed, std::nullopt);
   EXPECT_EQ(read(R"({"input": [0, 0], "believed": 0.25})").believed, 0.25);

@@ -32,7 +32,7 @@ Trace failed(const std::string& mode, const std::vector<std::string>& more = {})
   return run_episode(outside_scenario(OutsideKind::kExternal, overrides), {.seed = 1});
 }
 
-TEST(OutsideProcess, what_its_answers_may_not_be_is_said_with_what_was_found) {
+TEST(OutsideProcess, invalid_answers_are_reported_with_what_was_found) {
   const std::vector<std::pair<std::string, std::string>> modes = {
       {"text", "found an answer that is not JSON: steer straight on, expected {\"input\": […]}"},
       {"list", "found the answer [0.0]"},
@@ -82,7 +82,7 @@ TEST(OutsideProcess, that_does_not_begin_is_a_fault_of_the_controller) {
   EXPECT_THAT(run_episode(gone, {}).fault, HasSubstr("No such file or directory"));
 }
 
-TEST(OutsideProcess, of_a_library_that_does_not_begin_says_why) {
+TEST(OutsideProcess, reports_why_a_library_does_not_start) {
   for (const OutsideKind kind : {OutsideKind::kLibrary, OutsideKind::kOwnClass}) {
     const Scenario scenario = outside_scenario(kind, {"controller.options.mode=no_start"});
     const Trace trace = run_episode(scenario, {});

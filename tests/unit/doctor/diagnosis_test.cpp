@@ -37,21 +37,21 @@ Scenario robot(double hold, double turn, const std::vector<std::string>& more = 
   return load_scenario(kRobot, overrides);
 }
 
-TEST(Diagnosis, a_hold_ten_times_too_slow_is_told_with_numbers) {
+TEST(Diagnosis, a_hold_ten_times_too_slow_is_reported_with_numbers) {
   EXPECT_THAT(
       plant_warnings(robot(1.25, 2.25)),
       Contains(AllOf(HasSubstr("without an input, x changes by 0.064 m in 0.8 s"),
                      HasSubstr("0.64 m in the model"), HasSubstr("0.0999 times the model's"))));
 }
 
-TEST(Diagnosis, a_vehicle_that_tips_over_while_it_settles_is_told) {
+TEST(Diagnosis, a_vehicle_that_tips_over_while_settling_is_reported) {
   EXPECT_THAT(
       plant_warnings(load_scenario(kRobot, {"model.speed=3"})),
       Contains(HasSubstr(
           "the vehicle tips over while settling: at the start of a drive it is tilted by ")));
 }
 
-TEST(Diagnosis, an_input_of_the_wrong_sign_is_told_although_the_noise_is_large) {
+TEST(Diagnosis, an_input_of_the_wrong_sign_is_reported_although_the_noise_is_large) {
   const std::string noise = "disturbance.covariance=[1, 1, 1]";
   EXPECT_THAT(plant_warnings(robot(12.5, -2.25, {noise})),
               Contains(AllOf(HasSubstr("yaw_rate held at ±0.2 rad/s changes heading by −0.16"),
@@ -59,7 +59,7 @@ TEST(Diagnosis, an_input_of_the_wrong_sign_is_told_although_the_noise_is_large) 
 }
 
 // 0.055 m per period short of the model's 0.3 m: of nearly the right size, with noise of 0.01 m.
-TEST(Diagnosis, a_mismatch_of_several_deviations_of_the_noise_is_told) {
+TEST(Diagnosis, a_mismatch_of_several_deviations_of_the_noise_is_reported) {
   const std::vector<std::string> cases{"disturbance.covariance=[0.0001, 0.0001]",
                                        "disturbance.covariance=[0.0025, 0.0025]"};
   std::vector<std::size_t> warnings;
@@ -89,7 +89,7 @@ TEST(Diagnosis, a_mismatch_of_several_deviations_of_the_noise_is_told) {
   EXPECT_THAT(warnings, ElementsAre(1U, 0U));
 }
 
-TEST(Diagnosis, an_input_that_acts_late_is_told) {
+TEST(Diagnosis, an_input_that_acts_late_is_reported) {
   EXPECT_THAT(plant_warnings(robot(12.5, 2.25, {"plant.input_delay=0.3"})),
               Contains(HasSubstr("s late")));
 }

@@ -35,7 +35,7 @@ nlohmann::json summary_of(const Trace& trace) {
   return nlohmann::json::parse(summary_json(EpisodeView(trace)));
 }
 
-TEST(BetweenInstants, a_wall_that_is_passed_within_a_period_is_told_and_changes_no_outcome) {
+TEST(BetweenInstants, a_wall_crossed_within_a_period_is_reported_and_changes_no_outcome) {
   const Trace trace = run_episode(straight_on(thin_wall), {});
   ASSERT_EQ(trace.steps.size(), 3U);
   EXPECT_EQ(trace.outcome, Outcome::kTimeout);

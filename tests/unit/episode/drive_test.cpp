@@ -64,7 +64,7 @@ TEST(Drive, is_over_before_it_begins_and_after_its_end) {
   EXPECT_THROW(drive.advance(decision), std::invalid_argument);
 }
 
-TEST(Drive, refuses_inputs_that_are_none) {
+TEST(Drive, refuses_invalid_inputs) {
   const Scenario scenario = short_scenario();
   Drive drive(scenario);
   drive.begin({.seed = 1});
@@ -121,7 +121,7 @@ Trace faulty(const Scenario& scenario,
   return trace;
 }
 
-TEST(ObjectController, that_throws_is_a_fault_with_its_words) {
+TEST(ObjectController, that_throws_is_a_fault_with_its_message) {
   int calls = 0;
   const Trace trace = faulty(short_scenario(), [&](const controller::Situation&) {
     if (++calls > 2) throw std::runtime_error("no idea");

@@ -22,7 +22,7 @@ Scenario broken_scenario(const std::vector<std::string>& wrong) {
   return load_scenario("dubins_obstacles", overrides);
 }
 
-TEST(EpisodeFaults, a_plant_that_breaks_is_an_outcome_with_the_simulators_words) {
+TEST(EpisodeFaults, a_plant_that_breaks_is_an_outcome_with_the_simulators_message) {
   const Scenario scenario = broken_scenario({"disturbance.covariance=[1e24, 1e24, 0]"});
   const Trace trace = run_episode(scenario, {.seed = 1});
   EXPECT_EQ(trace.outcome, Outcome::kFault);
@@ -33,7 +33,7 @@ TEST(EpisodeFaults, a_plant_that_breaks_is_an_outcome_with_the_simulators_words)
   EXPECT_EQ(trace.steps.back().residual.size(), 3);
 }
 
-TEST(EpisodeFaults, an_xml_file_that_mujoco_refuses_is_a_fault_in_its_own_words) {
+TEST(EpisodeFaults, an_xml_file_that_mujoco_refuses_is_a_fault_with_its_message) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / "qsmpc_episode_bad.xml";
   std::ofstream(file) << "<mujoco><worldbody><no_such_element/></worldbody></mujoco>";

@@ -45,7 +45,7 @@ TEST(EpisodeOutcome, ends_as_left_bounds_where_the_true_state_leaves_them) {
   EXPECT_GE(trace.final_state[1], 0.3);
 }
 
-TEST(EpisodeOutcome, that_goes_on_after_it_was_unsafe_ends_at_the_target_and_is_no_success) {
+TEST(EpisodeOutcome, that_continues_after_an_unsafe_state_ends_at_the_target_and_is_not_a_success) {
   for (const auto& [safe_set, outcome] :
        {std::pair(kColumn, Outcome::kCollision), std::pair(kWall, Outcome::kLeftBounds)}) {
     const Trace stopped = run_episode(blind_scenario(safe_set), {.seed = 2});

@@ -104,7 +104,7 @@ TEST(Episode, a_model_error_is_in_every_certificate_and_in_every_belief_that_was
   }
 }
 
-TEST(Episode, every_plan_takes_the_model_error_of_its_own_periods) {
+TEST(Episode, every_plan_uses_the_model_error_of_its_own_periods) {
   const Trace trace =
       run_episode(small_scenario({"model_error={rms: [0.01, 0, 0], first: [{rms: [0.3, 0, 0]}, "
                                   "{offset: [0, 0.1, 0], rms: [0, 0.1, 0]}]}"}),
@@ -275,7 +275,7 @@ TEST(Episode, a_chosen_propagator_and_quantiser_are_what_it_is_predicted_with) {
   EXPECT_GT(last_variance(plan_of("moment_matched", "product")), 1.05 * last_variance(usual));
 }
 
-TEST(Episode, what_the_scenario_says_of_the_controller_reaches_the_planner) {
+TEST(Episode, controller_keys_of_the_scenario_reach_the_planner) {
   const controller::PlannerSettings usual = planner_settings(small_scenario());
   EXPECT_FALSE(usual.optimise_gain);
   EXPECT_EQ(usual.solver, "lbfgs");

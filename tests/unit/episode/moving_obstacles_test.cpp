@@ -103,7 +103,7 @@ TEST(MovingObstacles, go_each_of_their_ways_as_often_as_it_is_probable) {
 
 // The drive knows the exact laws, so errors of the forecast follow the forecast: the squared
 // Mahalanobis distance is χ² with two degrees of freedom.
-TEST(MovingObstacles, come_where_they_were_forecast_as_often_as_it_was_said) {
+TEST(MovingObstacles, move_to_where_they_were_forecast_as_often_as_predicted) {
   const Scenario scenario = scenario_with(kWalker);
   auto forecast = std::make_shared<controller::ObstacleForecast>(1);
   constexpr int kAhead = 8;
@@ -185,7 +185,7 @@ TEST(MovingObstacles, are_read_back_from_a_trace) {
   EXPECT_TRUE(unsafe.is_certain(4));
 }
 
-TEST(MovingObstacles, are_told_to_every_controller) {
+TEST(MovingObstacles, are_reported_to_every_controller) {
   const Scenario scenario = crossing();
   std::vector<double> widths;
   const ControllerObject watcher{.name = "watcher", .act = [&](const controller::Situation& now) {

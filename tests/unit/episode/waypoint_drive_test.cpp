@@ -55,7 +55,7 @@ TEST(WaypointDrive, passes_them_in_order_and_ends_at_the_last) {
   EXPECT_EQ(true_states(again), states);
 }
 
-TEST(WaypointDrive, that_is_too_short_tells_which_were_passed) {
+TEST(WaypointDrive, that_is_too_short_reports_which_were_passed) {
   const Trace trace = run_episode(car_over(kLoop, {"limit.steps=45"}), {.seed = 1});
   const EpisodeView view(trace);
   EXPECT_EQ(view.summary().outcome, "timeout");

@@ -59,7 +59,7 @@ TEST(ContourLines, close_before_the_rim_and_about_values_that_are_not_finite) {
   }
 }
 
-TEST(ContourLines, there_are_none_of_a_level_that_is_not_reached) {
+TEST(ContourLines, a_level_that_is_not_reached_has_no_lines) {
   EXPECT_TRUE(contour_lines(MatrixXd::Ones(5, 5), 2.0).empty());
   EXPECT_TRUE(contour_lines(MatrixXd(0, 0), 0.0).empty());
 }

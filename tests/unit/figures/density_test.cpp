@@ -238,7 +238,7 @@ TEST(DensityContours, nearly_all_of_the_mass_still_has_a_closed_line) {
   EXPECT_TRUE(contours[0].points.allFinite());
 }
 
-TEST(Density, refuses_samples_that_are_none) {
+TEST(Density, refuses_invalid_samples) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW((void)density_curve(VectorXd(), kEqual), std::invalid_argument);
   EXPECT_THROW((void)density_curve(vector_of({1, nan}), kEqual), std::invalid_argument);

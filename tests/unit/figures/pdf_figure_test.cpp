@@ -76,7 +76,7 @@ TEST(PdfFigure, of_the_same_input_is_the_same_bytes_and_has_no_present_date) {
   EXPECT_FALSE(testing::contains(info, "ModDate")) << info;
 }
 
-TEST(PdfFigure, refuses_what_is_no_figure) {
+TEST(PdfFigure, refuses_what_is_not_a_figure) {
   EXPECT_THROW((void)pdf_figure("no drawing", ""), std::invalid_argument);
   EXPECT_THROW((void)pdf_figure("", ""), std::invalid_argument);
   EXPECT_THROW((void)pdf_figure("<svg xmlns=\"http://www.w3.org/2000/svg\"/>", ""),

@@ -149,7 +149,7 @@ TEST(MapFigure, one_heavy_dot_does_not_hide_the_map) {
   EXPECT_LE(diameter, 12.0);
 }
 
-TEST(MapFigure, a_large_cloud_is_thinned_by_weight_and_says_so) {
+TEST(MapFigure, a_large_cloud_is_thinned_by_weight_with_a_note) {
   constexpr Index kPoints = 100000;
   PlaneMap map = square_map();
   MapCloud cloud{.points = Matrix2Xd(2, kPoints), .weights = Eigen::VectorXd(kPoints)};
@@ -195,7 +195,7 @@ TEST(MapFigure, many_long_paths_stay_small) {
   EXPECT_EQ(testing::occurrences(html, "one of many"), 1);      // and appears once in the legend
 }
 
-TEST(MapFigure, what_is_not_finite_is_left_out_and_said) {
+TEST(MapFigure, what_is_not_finite_is_left_out_with_a_note) {
   PlaneMap map = full_map();
   map.paths[0].points[1].x = kNan;
   map.paths[0].points[3].y = kInfinity;

@@ -28,7 +28,7 @@ TEST(Axis, ticks_are_at_round_numbers_and_span_the_values) {
   EXPECT_EQ(ticks.back().label, "10");
 }
 
-TEST(Axis, a_power_of_ten_that_labels_share_is_said_once) {
+TEST(Axis, a_power_of_ten_shared_by_labels_is_shown_once) {
   EXPECT_EQ(common_power(rounded_axis({0.0, 2.2e-6}, 5), 5), -6);
   EXPECT_EQ(common_power(rounded_axis({0.0, 2.4e9}, 5), 5), 9);
   EXPECT_EQ(common_power(rounded_axis({0.0, 90'000.0}, 5), 5), 0);
@@ -109,7 +109,7 @@ TEST(ChartFigure, has_title_labels_and_legend) {
   }
 }
 
-TEST(ChartFigure, a_gap_interrupts_the_line_and_is_said) {
+TEST(ChartFigure, a_gap_interrupts_the_line_and_is_noted) {
   Chart chart = example_chart();
   chart.series[0].y[1] = kNan;
   const std::string html = chart_figure(chart);
@@ -242,7 +242,7 @@ TEST(ChartFigure, a_long_label_of_y_takes_two_lines) {
   EXPECT_EQ(testing::occurrences(chart_drawing(chart), "rotate(-90)"), 2);
 }
 
-TEST(ChartFigure, is_told_in_words) {
+TEST(ChartFigure, is_described_in_words) {
   Chart chart = joined_chart();
   EXPECT_TRUE(testing::contains(chart_drawing(chart), "aria-label=\"Risk: cost\""));
   chart.in_words = "strict: \"10\"";

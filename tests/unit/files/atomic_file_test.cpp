@@ -146,7 +146,7 @@ TEST(PendingFile, does_not_write_through_a_symbolic_link) {
   EXPECT_EQ(content_of(folder / "b.txt"), "new");
 }
 
-TEST(CommitPartialFile, keeps_the_old_file_where_there_is_no_finished_one) {
+TEST(CommitPartialFile, keeps_the_old_file_if_the_new_one_is_unfinished) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.txt", "old");
   EXPECT_THAT(io_error_of([&] { commit_partial_file(path); }), HasSubstr(path));

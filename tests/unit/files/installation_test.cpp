@@ -27,7 +27,7 @@ TEST(Installation, finds_the_prefix_of_the_python_module) {
                           "/env/lib/python3.11/site-packages", "/env"));
 }
 
-TEST(Installation, has_no_prefix_where_the_system_does_not_tell_the_file) {
+TEST(Installation, has_no_prefix_where_the_executable_is_unknown) {
   EXPECT_TRUE(installation_prefixes_of("").empty());
 }
 

@@ -41,7 +41,7 @@ TEST(random_access_file, empties_what_was_there_and_stays_when_closed) {
   EXPECT_EQ(RandomAccessFile(path).size(), 0);
 }
 
-TEST(random_access_file, errors_name_the_path_and_the_systems_words) {
+TEST(random_access_file, errors_give_the_path_and_the_systems_message) {
   const testing::TemporaryFolder folder;
   const std::string path = folder / "missing/bytes";
   try {

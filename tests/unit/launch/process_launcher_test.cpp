@@ -43,7 +43,7 @@ class LocalLauncher : public ::testing::Test {
   qsmpc::testing::TemporaryFolder folder;
 };
 
-TEST_F(LocalLauncher, runs_every_task_and_tells_how_each_ended) {
+TEST_F(LocalLauncher, runs_every_task_and_reports_how_each_ended) {
   const auto launcher = make_launcher({.on = "local", .tasks = 3});
   const std::string record =
       launcher->start(request("echo task $2 $(readlink /proc/self/fd/0); echo 'last words' >&2; "
@@ -131,7 +131,7 @@ TEST_F(LocalLauncher, leaves_no_worker_when_the_process_that_started_it_is_kille
   EXPECT_THAT(state.note, HasSubstr("the process that started it has ended"));
 }
 
-TEST_F(LocalLauncher, cannot_tell_of_processes_of_another_machine) {
+TEST_F(LocalLauncher, knows_nothing_about_processes_of_another_machine) {
   LaunchRecord record{.kind = "local",
                       .launch = "first",
                       .folder = folder.path(),
@@ -146,7 +146,7 @@ TEST_F(LocalLauncher, cannot_tell_of_processes_of_another_machine) {
   EXPECT_EQ(fate_of(record.conductor), ProcessFate::kGone);
 }
 
-TEST(SshLauncher, loses_a_host_that_fails_and_goes_on_with_the_others) {
+TEST(SshLauncher, loses_a_host_that_fails_and_continues_with_the_others) {
   const qsmpc::testing::TemporaryFolder folder;
   const qsmpc::testing::FakePrograms fakes;
   // Like ssh: the words after the host are passed to a shell there.

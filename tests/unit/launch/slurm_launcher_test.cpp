@@ -61,7 +61,7 @@ TEST_F(SlurmLauncherWithFakes, leaves_no_array_that_nobody_knows_of) {
   EXPECT_THAT(fakes.calls(), HasSubstr("scancel 17\n"));
 }
 
-TEST_F(SlurmLauncherWithFakes, tells_the_last_words_of_a_command_that_fails) {
+TEST_F(SlurmLauncherWithFakes, reports_the_last_lines_of_a_command_that_fails) {
   fakes.add("sbatch", "echo first >&2; echo 'sbatch: error: invalid partition' >&2; exit 1");
   EXPECT_THAT(io_error_of([&] { (void)launcher.start(request(1)); }),
               MatchesRegex("sbatch --parsable .*: exit code 1: sbatch: error: invalid partition"));

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-TEST(SlurmScript, holds_what_sbatch_is_told) {
+TEST(SlurmScript, contains_the_options_of_sbatch) {
   const LaunchRequest request{
       .folder = "/shared/my 50% run",
       .worker = {"/usr/bin/qsmpc", "campaign", "work", "/shared/my 50% run"},

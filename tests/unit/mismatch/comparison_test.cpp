@@ -179,7 +179,7 @@ TEST(ComparePlants, refuses_names_that_are_not_known_before_anything_is_made) {
   EXPECT_THROW((void)compare_plants(testing::short_scenario(), options), InputError);
 }
 
-TEST(ComparePlants, is_given_up_when_asked_and_tells_how_far_it_is) {
+TEST(ComparePlants, stops_when_asked_and_reports_its_progress) {
   ComparisonOptions options = small_options({"analytic"});
   options.should_stop = [] { return true; };
   EXPECT_FALSE(compare_plants(testing::short_scenario(), options));
@@ -252,7 +252,7 @@ TEST_F(WrittenComparison, table_fits_a_terminal_and_names_every_plant) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 96U) << line;
 }
 
-TEST_F(WrittenComparison, says_beside_the_numbers_of_drives_that_they_are_no_bounds) {
+TEST_F(WrittenComparison, says_beside_the_numbers_of_drives_that_they_are_not_bounds) {
   EXPECT_THAT(comparison_table(comparison_), ::testing::Not(HasSubstr("NO BOUND")));
   EXPECT_EQ(nlohmann::json::parse(comparison_json(comparison_))["certificate"]["holds"], true);
   comparison_.scenario.disturbance.sensor = Eigen::MatrixXd::Identity(3, 3);

@@ -57,7 +57,7 @@ TEST(ResidualStatistics, of_one_episode_the_statistic_is_that_of_ljung_and_box) 
               std::erfc(std::sqrt(4.5)) + std::sqrt(18.0 / M_PI) * std::exp(-4.5), 1e-12);
 }
 
-TEST(ResidualStatistics, periods_of_different_episodes_are_no_neighbours) {
+TEST(ResidualStatistics, periods_of_different_episodes_are_not_neighbours) {
   // Joined, they would be 1, 1, −1, −1 with two more pairs.
   const Whiteness whiteness =
       residual_statistics({row({1.0, 1.0}), row({-1.0, -1.0})}, kOne).whiteness;

@@ -139,7 +139,7 @@ TEST_F(BicycleTest, stands_still_without_blowing_up) {
   EXPECT_LE(std::abs(state[Bicycle::kYawRate]), 0.5);
 }
 
-TEST_F(BicycleTest, box_around_the_pole_bounds_only_what_has_none) {
+TEST_F(BicycleTest, box_around_the_pole_bounds_only_derivatives_without_one) {
   Eigen::VectorXd lower = Eigen::VectorXd::Constant(8, -1.0);
   Eigen::VectorXd upper = Eigen::VectorXd::Constant(8, 1.0);
   lower[Bicycle::kLongitudinalSpeed] = -16.0;
@@ -156,7 +156,7 @@ TEST_F(BicycleTest, box_around_the_pole_bounds_only_what_has_none) {
   }
 }
 
-TEST_F(BicycleTest, senseless_parameters_are_refused) {
+TEST_F(BicycleTest, invalid_parameters_are_refused) {
   for (const char* name : {"mass", "yaw_inertia", "front_axle_distance", "rear_axle_distance"}) {
     for (const double value : {0.0, -1.0, std::nan("")}) {
       EXPECT_THROW((void)make_dynamics("bicycle", {{name, value}}, 0.1), std::invalid_argument);

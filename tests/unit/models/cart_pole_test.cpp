@@ -153,7 +153,7 @@ TEST(CartPole, push_moves_the_cart_forwards_and_tips_the_pole_backwards) {
   EXPECT_LT(next[CartPole::kAngularVelocity], 0.0);
 }
 
-TEST(CartPole, senseless_parameters_are_refused) {
+TEST(CartPole, invalid_parameters_are_refused) {
   for (const char* name : {"cart_mass", "pole_mass", "pole_half_length", "gravity"}) {
     for (const double value : {0.0, -1.0, std::nan("")}) {
       EXPECT_THROW((void)make_dynamics("cart_pole", {{name, value}}, 0.1), std::invalid_argument);

@@ -181,7 +181,7 @@ TEST_P(DerivativeBoundsOfEverySystem, whole_space_has_an_enclosure_without_nan) 
   }
 }
 
-TEST_P(DerivativeBoundsOfEverySystem, what_is_no_box_is_refused) {
+TEST_P(DerivativeBoundsOfEverySystem, an_invalid_box_is_refused) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(arguments());
   for (const double lower : {1.0, kInfinity, std::nan("")}) {
     Box box{zero, zero};

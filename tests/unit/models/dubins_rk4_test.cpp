@@ -142,7 +142,7 @@ TEST(DubinsRk4, lipschitz_constant_is_little_above_what_jacobians_attain) {
   }
 }
 
-TEST(DubinsRk4, senseless_speeds_and_gains_are_refused) {
+TEST(DubinsRk4, invalid_speeds_and_gains_are_refused) {
   for (const double speed : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
     EXPECT_THROW((void)make_dynamics("dubins_rk4", {{"speed", speed}}, kTimeStep),
                  std::invalid_argument);

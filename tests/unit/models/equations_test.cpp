@@ -57,7 +57,7 @@ TEST(Equations, compute_what_is_written) {
   }
 }
 
-TEST(Equations, leave_no_number_where_there_is_none) {
+TEST(Equations, give_nan_where_there_is_no_value) {
   for (const char* formula : {"log(a)", "sqrt(a)", "asin(2 * a)", "a^0.3", "min(1, sqrt(a))",
                               "max(sqrt(a), 1)", "min(sqrt(a), 1)"}) {
     EXPECT_TRUE(std::isnan(value_of(formula, -1.0, 0.0))) << formula;

@@ -163,7 +163,7 @@ TEST_F(MujocoPlantFault, refuses_a_missing_file) {
   EXPECT_EQ(where.found, "no such file");
 }
 
-TEST_F(MujocoPlantFault, refuses_xml_that_is_malformed_or_no_model_and_says_the_line) {
+TEST_F(MujocoPlantFault, refuses_xml_that_is_malformed_or_not_a_model_and_names_the_line) {
   const std::string malformed = folder_.file("a.xml", "<mujoco>\n<worldbody>\n</mujoco>\n");
   EXPECT_EQ(refusal(malformed).file, malformed);
   EXPECT_EQ(refusal(malformed).line, 2);
@@ -200,7 +200,7 @@ TEST_F(MujocoPlantFault, refuses_a_vehicle_that_cannot_hold_its_speed) {
   EXPECT_THAT(where.found, HasSubstr("m/s after settling"));
 }
 
-TEST_F(MujocoPlantFault, refuses_a_period_that_is_no_multiple_of_the_timestep) {
+TEST_F(MujocoPlantFault, refuses_a_period_that_is_not_a_multiple_of_the_timestep) {
   EXPECT_EQ(refusal(kCarFile, 0.101).key, "option timestep");
   EXPECT_EQ(refusal(kCarFile, 0.001).key, "option timestep");
   EXPECT_NO_THROW(make_car(kCarFile, 0.05));

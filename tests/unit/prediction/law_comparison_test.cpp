@@ -88,7 +88,7 @@ TEST(CompareLaws, numbers_do_not_depend_on_the_number_of_threads) {
   }
 }
 
-TEST(CompareLaws, the_paths_are_those_of_the_simulation_alone) {
+TEST(CompareLaws, the_paths_equal_those_of_a_simulation_alone) {
   const PredictionReport report = compared({"linearised"}, 5000);
   const PredictionReport plain = predict_scenario(
       small_scenario(),

@@ -175,7 +175,7 @@ TEST(PredictionFile, holds_particles_policy_and_certificates) {
   EXPECT_EQ(file.integers("/monte_carlo/unsafe"), report.monte_carlo->stages);
 }
 
-TEST(PredictionFile, every_dataset_says_its_units_and_axes_and_is_documented) {
+TEST(PredictionFile, every_dataset_names_its_units_and_axes_and_is_documented) {
   const TemporaryFolder folder;
   write_prediction(simulated(), folder.path());
   const Hdf5File file = Hdf5File::open(folder.path() + "/predict.h5");
@@ -231,7 +231,7 @@ TEST(PredictionTable, fits_80_columns_whatever_the_numbers) {
   }
 }
 
-TEST(PredictionTable, marks_the_published_value_as_no_bound) {
+TEST(PredictionTable, marks_the_published_value_as_not_a_bound) {
   EXPECT_THAT(prediction_table(simulated()), HasSubstr("thesis*"));
   EXPECT_THAT(prediction_table(simulated()), HasSubstr("NOT a bound"));
   PredictionReport plain = simulated();

@@ -118,7 +118,7 @@ TEST(MonteCarlo, progress_ends_with_all_paths) {
   EXPECT_EQ(last, 3000);
 }
 
-TEST(ContradictedStages, certificates_hold_and_one_that_does_not_is_told) {
+TEST(ContradictedStages, certificates_hold_and_one_that_does_not_is_reported) {
   PredictionReport report =
       predict_scenario(testing::small_scenario({"safe_set.bounds={x: [-0.1, 12]}"}),
                        {.monte_carlo = {.samples = 5000}});

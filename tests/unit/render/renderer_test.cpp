@@ -252,7 +252,7 @@ TEST(renderer, refuses_frames_that_do_not_fit_the_vehicle) {
   EXPECT_FALSE(image.rgb.empty());
 }
 
-TEST(renderer, refuses_cameras_and_sizes_that_are_none) {
+TEST(renderer, refuses_unknown_cameras_and_invalid_sizes) {
   EXPECT_THROW(Renderer(small_picture("front"), small_world(), kRedBox), std::invalid_argument);
   RenderOptions options;
   options.width = 0;

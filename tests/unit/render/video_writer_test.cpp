@@ -141,7 +141,7 @@ TEST(video_writer, refuses_frames_of_another_size) {
   EXPECT_THROW(video.add(test_image(0)), std::invalid_argument);
 }
 
-TEST(video_writer, folder_that_does_not_exist_is_named_with_the_systems_words) {
+TEST(video_writer, folder_that_does_not_exist_is_named_with_the_systems_message) {
   const std::string path = fresh_folder() / "missing" / "video.mp4";
   const std::string error = error_of([&] { harness::VideoFile(path, settings()); });
   EXPECT_THAT(error, HasSubstr(path));

@@ -81,7 +81,7 @@ TEST(CampaignFigures, of_no_episodes_exist) {
   }
 }
 
-TEST(ReliabilityFigure, says_where_certificates_are_no_bounds_and_calls_none_of_those_exceeded) {
+TEST(ReliabilityFigure, says_where_certificates_are_not_bounds_and_calls_none_of_those_exceeded) {
   CampaignStatistics statistics = example();
   EXPECT_FALSE(testing::contains(campaign_page(statistics), "No bound"));
   statistics.variants[1].no_bound = "for a reason";
@@ -191,7 +191,7 @@ TEST(CampaignPage, has_tables_and_figures_with_texts_that_are_escaped) {
       << "of one pair of variants there is a table";
 }
 
-TEST(CampaignPage, links_what_there_is_of_the_worst_episodes_and_says_how_to_make_the_rest) {
+TEST(CampaignPage, links_existing_files_of_the_worst_episodes_and_says_how_to_make_the_rest) {
   CampaignStatistics statistics = example();
   EXPECT_FALSE(testing::contains(campaign_page(statistics), "The worst episodes"));
   ListedEpisode made{.page = "episodes/1/7/report.html",
@@ -280,7 +280,7 @@ TEST(CampaignPage, has_a_bar_of_all_drives_and_the_rates_of_each_variant) {
   EXPECT_FALSE(testing::contains(page, "Left safe set"));
 }
 
-TEST(CampaignPage, shows_the_former_word_where_a_store_has_it) {
+TEST(CampaignPage, shows_the_old_outcome_name_where_a_store_has_it) {
   CampaignStatistics statistics = crashing_campaign();
   VariantTally tally;
   tally.add({.outcome = "left_safe_set", .unsafe = true});

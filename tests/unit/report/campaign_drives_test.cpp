@@ -129,7 +129,7 @@ TEST(Distributions, of_more_variants_than_colours_are_ranges) {
   EXPECT_EQ(charts[0].series[0].upper, std::vector<double>(9, 3.0));
 }
 
-TEST(Distributions, of_a_single_value_are_no_chart) {
+TEST(Distributions, of_a_single_value_give_no_chart) {
   EXPECT_TRUE(distribution_charts(campaign({variant(0, {"reached"})})).empty());
   Chart chart{
       .title = "", .x_label = "", .y_label = "", .series = {{.name = "", .x = {1}, .y = {1}}}};

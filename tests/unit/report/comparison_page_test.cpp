@@ -99,7 +99,7 @@ TEST(ComparisonPage, says_first_which_certificates_are_exceeded_and_where) {
   EXPECT_TRUE(testing::contains(page, "<strong>1 to 3</strong>"));
 }
 
-TEST(ComparisonPage, calls_the_certificates_of_drives_no_bounds_and_those_along_the_plan_bounds) {
+TEST(ComparisonPage, says_that_certificates_along_the_plan_are_bounds_and_those_of_drives_are_not) {
   Comparison comparison = example();
   EXPECT_FALSE(testing::contains(comparison_page(comparison), "no bound"));
   comparison.scenario.disturbance.sensor = Eigen::MatrixXd::Identity(3, 3);

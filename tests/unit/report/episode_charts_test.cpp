@@ -48,7 +48,7 @@ TEST(EpisodeCharts, say_bounds_once_that_would_press_the_input_flat) {
   EXPECT_TRUE(contains(chart.note, "Beyond the scale: bounds −80, 80 rad/s.")) << chart.note;
 }
 
-TEST(EpisodeCharts, name_the_bound_that_is_drawn_where_the_other_one_is_said) {
+TEST(EpisodeCharts, name_the_bound_that_is_drawn_where_the_other_is_a_note) {
   Trace trace = bounded(1.2);
   trace.scenario.controller.input_lower.setConstant(1, -50.0);
   const Chart chart = chart_of(trace, "Input: ");

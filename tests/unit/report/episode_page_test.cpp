@@ -58,7 +58,7 @@ TEST(EpisodePage, its_tags_are_balanced) {
             "");
 }
 
-TEST(EpisodePage, says_beside_every_certificate_that_it_is_no_bound) {
+TEST(EpisodePage, says_beside_every_certificate_that_it_is_not_a_bound) {
   Trace trace = testing::example_trace();
   EXPECT_FALSE(contains(markup_of(episode_page(EpisodeView(trace), {})), "o bound"));
   const auto states = static_cast<Eigen::Index>(trace.system.states.size());
@@ -259,7 +259,7 @@ TEST(EpisodePage, has_a_chart_of_each_kind_and_the_map) {
   }
 }
 
-TEST(EpisodePage, a_fault_at_the_start_gives_its_words_and_no_charts) {
+TEST(EpisodePage, a_fault_at_the_start_shows_its_message_and_no_charts) {
   const std::string page = episode_page(EpisodeView(trace_that_failed_at_the_start()), {});
   EXPECT_TRUE(testing::contains(page, "The simulator failed at the start"));
   EXPECT_TRUE(testing::contains(page, "XML Error: &lt;body&gt; is broken"));

@@ -238,7 +238,7 @@ TEST(EpisodeScene, keeps_every_nth_sample_of_a_long_drive_and_the_last_one) {
   EXPECT_NEAR(times.back(), 50.0, 1e-5);
 }
 
-TEST(EpisodeScene, is_left_out_with_a_word_where_the_model_is_another_or_gone) {
+TEST(EpisodeScene, is_left_out_with_a_note_where_the_model_is_different_or_missing) {
   const testing::TemporaryFolder folder;
   Trace trace = driven_trace(folder.file("vehicle.xml", kVehicle));
   trace.motion.back().qpos.push_back(0.0);

@@ -85,7 +85,7 @@ TEST(WriteFigures, puts_titles_and_notes_into_the_captions_where_they_are_not_dr
   EXPECT_FALSE(testing::contains(text("both.svg"), ">Least"));
 }
 
-TEST(WriteFigures, where_one_cannot_be_written_none_has_its_name) {
+TEST(WriteFigures, if_one_cannot_be_written_none_gets_its_final_name) {
   const TemporaryFolder folder;
   EXPECT_THROW((void)write_figures({figure("one"), figure("no/two")}, folder.path()), IoError);
   EXPECT_TRUE(names_in(folder.path() + "/figures").empty());

@@ -76,7 +76,7 @@ TEST(TradeoffCharts, have_a_point_a_variant_and_a_series_a_family) {
   EXPECT_EQ(chart.series[0].labels[1], "w20");
 }
 
-TEST(TradeoffCharts, say_what_is_no_bound_beside_what_was_certified_alone) {
+TEST(TradeoffCharts, say_what_is_not_a_bound_beside_what_was_certified_alone) {
   CampaignStatistics statistics = tradeoff_example();
   EXPECT_FALSE(testing::contains(tradeoff_charts(statistics)[1].note, "NO BOUND"));
   statistics.variants[1].no_bound = "for a reason";
@@ -122,7 +122,7 @@ TEST(TradeoffCharts, say_how_many_drives_did_not_reach_the_target) {
   EXPECT_EQ(tradeoff_charts(statistics)[0].note, "All drives reached the target.");
 }
 
-TEST(TradeoffCharts, are_told_in_words) {
+TEST(TradeoffCharts, are_described_in_words) {
   const std::string words = tradeoff_charts(tradeoff_example())[0].in_words;
   EXPECT_TRUE(testing::contains(words, "penalties: w2 20 % unsafe, mean cost 100; w20 1 % unsafe"));
   EXPECT_TRUE(testing::contains(words, "never 0 % unsafe, mean cost none."));

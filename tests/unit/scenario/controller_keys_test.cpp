@@ -176,7 +176,7 @@ TEST(ControllerKeys, penalties_weigh_nothing_by_default_where_limits_of_the_risk
   EXPECT_EQ(again.controller.penalty.box, 0.0);
 }
 
-TEST(ControllerKeys, a_deadline_is_written_unless_there_is_none) {
+TEST(ControllerKeys, a_deadline_is_written_only_if_there_is_one) {
   const Scenario some = minimal_with({"controller.deadline=0.30000000000000004"});
   EXPECT_THAT(to_yaml(some), HasSubstr("\n  deadline: 0.30000000000000004\n"));
   expect_round_trip(some);

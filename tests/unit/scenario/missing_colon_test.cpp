@@ -16,14 +16,14 @@ void expect_at(int line, const std::string& words, const std::string& text) {
   EXPECT_EQ(where.expected, "a colon after the key");
 }
 
-TEST(MissingColon, is_told_at_its_own_line) {
+TEST(MissingColon, is_reported_at_its_own_line) {
   expect_at(2, "time_step 0.1", "name: x\ntime_step 0.1\nmodel: {system: dubins}\n");
   expect_at(2, "time_step 0.1", "name: x\ntime_step 0.1   # s\n\n# more\nmodel: {}\n");
   expect_at(3, "system dubins", "name: x\nmodel:\n  system dubins\n  speed: 1\n");
   expect_at(4, "speed 1", "name: x\nmodel:\n  system: dubins\n  speed 1\ntime_step: 0.1\n");
 }
 
-TEST(MissingColon, is_told_in_the_last_line) {
+TEST(MissingColon, is_reported_in_the_last_line) {
   expect_at(3, "time_step 0.1", "name: x\nmodel: {system: dubins}\ntime_step 0.1\n");
   expect_at(3, "time_step 0.1", "name: x\nmodel: {system: dubins}\ntime_step 0.1");
 }

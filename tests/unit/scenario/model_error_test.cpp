@@ -143,7 +143,7 @@ TEST(ModelErrorKey, of_the_command_line_is_found_in_the_working_folder_too) {
   expect_same(*found, error);
 }
 
-TEST(ModelErrorKey, problems_of_its_file_are_told_with_its_name_and_line) {
+TEST(ModelErrorKey, problems_of_its_file_are_reported_with_name_and_line) {
   const TemporaryFolder folder;
   (void)folder.file("error.yaml", "system: bicycle\nrms: [0.1, 0.1, 0.1]\nnorm4: [1, 1, 0.01]\n");
   const std::string path = folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
@@ -238,7 +238,7 @@ TEST(ErrorOrigin, stays_in_the_resolved_scenario_and_is_not_needed) {
   EXPECT_THAT(scenario_warnings(load_scenario(path)), ::testing::IsEmpty());
 }
 
-TEST(ModelErrorKey, rounding_of_printed_norms_is_no_contradiction) {
+TEST(ModelErrorKey, rounding_of_printed_norms_is_not_a_contradiction) {
   EXPECT_EQ(loaded("rms: [0.1, 0, 0]\nradius: 0.09999999999\n").radius(), 0.09999999999);
 }
 
@@ -253,7 +253,7 @@ std::string name_of(const ::testing::TestParamInfo<Refused>& info) { return info
 
 class RefusedModelError : public ::testing::TestWithParam<Refused> {};
 
-TEST_P(RefusedModelError, is_told_with_where_and_why) {
+TEST_P(RefusedModelError, is_reported_with_where_and_why) {
   const Refused& refused = GetParam();
   const InputError::Where where = refusal_of(minimal_text + refused.text);
   EXPECT_GE(where.line, 6);

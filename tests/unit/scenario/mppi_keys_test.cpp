@@ -91,7 +91,7 @@ TEST(MppiKeys, a_share_beside_a_temperature_would_do_nothing) {
       "0, or at least 2");
 }
 
-TEST(MppiKeys, its_plans_have_no_feedback_and_its_words_no_policy) {
+TEST(MppiKeys, its_plans_have_no_feedback_and_its_messages_no_policy) {
   const Scenario scenario =
       minimal_with({"controller.kind=mppi", "disturbance.sensor=[0.01, 0.01, 0.001]",
                     "controller.mppi.samples=512", "controller.horizon=7"});

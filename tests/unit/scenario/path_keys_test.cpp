@@ -107,7 +107,7 @@ struct WrongPath {
   std::string expected;
 };
 
-TEST(PathKeys, what_is_wrong_with_a_file_is_told_with_its_line) {
+TEST(PathKeys, errors_in_a_file_are_reported_with_their_line) {
   for (const WrongPath& wrong : std::initializer_list<WrongPath>{
            {"0,0\n5,zero\n", 2, "5,zero", "x, y"},
            {"0,0\n5,0,1\n", 2, "5,0,1", "right width"},
@@ -128,7 +128,7 @@ TEST(PathKeys, what_is_wrong_with_a_file_is_told_with_its_line) {
   }
 }
 
-TEST(PathKeys, roads_that_cannot_be_are_told) {
+TEST(PathKeys, impossible_roads_are_reported) {
   const PathBeside wide("0,0,3,3\n10,0,3,3\n13,3,3,3\n10,6,3,3\n0,6,3,3\n");
   EXPECT_THAT(wide.refusal().found, HasSubstr("inner side of a bend"));
   EXPECT_GT(wide.refusal().line, 0);
@@ -147,7 +147,7 @@ TEST(PathKeys, roads_that_cannot_be_are_told) {
   EXPECT_TRUE(load_scenario(PathBeside(line).scenario).target.path.closed);
 }
 
-TEST(PathKeys, a_road_narrower_than_the_vehicle_is_told) {
+TEST(PathKeys, a_road_narrower_than_the_vehicle_is_reported) {
   const InputError::Where where =
       refusal_of(with_target("{path: [[0, 0, 1, 1], [5, 0, 1, 1], [10, 0, 0.3, 0.4]]}") +
                  "vehicle: {footprint: [{radius: 0.5}]}\n");
@@ -157,7 +157,7 @@ TEST(PathKeys, a_road_narrower_than_the_vehicle_is_told) {
   EXPECT_THAT(where.expected, HasSubstr("more than the 1 m"));
 }
 
-TEST(PathKeys, a_start_off_the_road_or_over_its_edge_is_told) {
+TEST(PathKeys, a_start_off_the_road_or_over_its_edge_is_reported) {
   const std::string road = "{path: [[0, 5, 1, 1], [5, 5, 1, 1], [10, 5, 1, 1]]}";
   EXPECT_THAT(refusal_of(with_target(road)).found, HasSubstr("off the road"));
   const std::string near = "{path: [[-5, 0.8, 1, 1], [5, 0.8, 1, 1], [10, 0.8, 1, 1]]}";
@@ -185,7 +185,7 @@ TEST(PathKeys, what_does_not_go_with_a_path_is_refused) {
   EXPECT_EQ(refused_with("{kind: external, command: [\"true\"]}"), "target.path");
 }
 
-TEST(PathKeys, a_bicycle_is_told_its_speed_or_is_fast) {
+TEST(PathKeys, a_bicycle_has_a_given_speed_or_drives_as_fast_as_allowed) {
   const std::string text =
       "name: test\nmodel: {system: bicycle}\nplant: {kind: analytic, mjcf: \"\"}\n"
       "initial_state: {mean: [0, 0, 0, 3, 0, 0]}\n";

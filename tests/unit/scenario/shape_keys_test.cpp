@@ -51,7 +51,7 @@ TEST(Shapes, are_read_in_the_order_of_the_scenario) {
 
 TEST(Shapes, survive_being_written_and_loaded) { expect_round_trip(parse_scenario(every_shape)); }
 
-TEST(Shapes, have_an_angle_of_zero_unless_they_say_one) {
+TEST(Shapes, have_an_angle_of_zero_by_default) {
   const Scenario scenario =
       parse_scenario(with_obstacles("    - {ellipse: {centre: [3, -4], semi_axes: [1, 0.5]}}\n"
                                     "    - {box: {centre: [3, 4], size: [1, 0.5]}}\n"));
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "target.state", "inside safe_set.obstacles.0", "the safe set", 5}),
     [](const auto& tested) { return tested.param.name; });
 
-TEST(Shapes, of_which_the_body_reaches_into_one_are_told) {
+TEST(Shapes, that_the_body_reaches_into_are_reported) {
   const InputError::Where where =
       refusal_of(with_obstacles("    - {disc: {centre: [0, 1], radius: 0.5}}\n"),
                  {"vehicle.footprint=[{radius: 0.75}]"});

@@ -55,7 +55,7 @@ struct WrongWaypoints {
   std::string expected;
 };
 
-TEST(WaypointKeys, what_is_wrong_is_told_in_one_line) {
+TEST(WaypointKeys, errors_are_reported_in_one_line) {
   for (const WrongWaypoints& wrong : std::initializer_list<WrongWaypoints>{
            {"{waypoints: []}", "target.waypoints", "0 waypoints", "1 to 1000 waypoints"},
            {"{waypoints: 5}", "target.waypoints", "5", "a list"},

@@ -237,7 +237,7 @@ TEST(Splitting, gives_up_at_the_floor) {
   EXPECT_LT(run.paths, 200);
 }
 
-TEST(Splitting, ends_where_it_is_told_to_stop) {
+TEST(Splitting, ends_when_it_is_told_to_stop) {
   int left = 30;
   const auto run =
       split({.particles = 20}, 1, [&](const PathSeeds& seeds, bool) -> std::optional<SplitPath> {
@@ -259,7 +259,7 @@ TEST(Splitting, refuses_paths_that_are_not_repeated) {
                PathNotRepeated);
 }
 
-TEST(Splitting, refuses_levels_and_settings_that_make_no_sense) {
+TEST(Splitting, refuses_invalid_levels_and_settings) {
   const auto none = [](const PathSeeds&, bool) { return SplitPath{}; };
   const auto nan = [](const PathSeeds&, bool) {
     return SplitPath{.levels = {std::numeric_limits<double>::quiet_NaN()}};

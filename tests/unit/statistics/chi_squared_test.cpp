@@ -20,7 +20,7 @@ TEST(ChiSquaredTail, of_what_is_not_finite_is_not_a_number) {
   EXPECT_TRUE(std::isnan(chi_squared_tail(std::numeric_limits<double>::infinity(), 3)));
 }
 
-TEST(ChiSquaredTail, refuses_what_cannot_be) {
+TEST(ChiSquaredTail, refuses_impossible_arguments) {
   EXPECT_THROW((void)chi_squared_tail(-1.0, 3), std::domain_error);
   EXPECT_THROW((void)chi_squared_tail(1.0, 0), std::domain_error);
 }

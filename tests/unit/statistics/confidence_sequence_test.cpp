@@ -44,7 +44,7 @@ TEST(ConfidenceSequence, is_wider_than_an_interval_for_that_number_alone_but_not
   }
 }
 
-TEST(ConfidenceSequence, refuses_what_cannot_be) {
+TEST(ConfidenceSequence, refuses_impossible_arguments) {
   EXPECT_THROW((void)confidence_sequence(-1, 3, 0.9), std::invalid_argument);
   EXPECT_THROW((void)confidence_sequence(4, 3, 0.9), std::invalid_argument);
   EXPECT_THROW((void)confidence_sequence(1, 3, 1.0), std::invalid_argument);

@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace exceedance_test {
 
-TEST(Exceedance, nothing_certified_and_nothing_happened_is_no_evidence) {
+TEST(Exceedance, nothing_certified_and_no_event_is_not_evidence) {
   EXPECT_EQ(exceedance_p_value({{.events = 0, .certified = 0.0}}), 1.0);
   EXPECT_EQ(exceedance_p_value({{.events = 0, .certified = 5.0}}), 1.0);
 }
@@ -23,7 +23,7 @@ TEST(Exceedance, an_event_that_was_certified_not_to_happen_is_proof) {
             0.0);
 }
 
-TEST(Exceedance, as_many_events_as_certified_are_no_evidence_and_many_more_are) {
+TEST(Exceedance, as_many_events_as_certified_are_not_evidence_and_many_more_are) {
   EXPECT_GT(exceedance_p_value({{.events = 10, .certified = 10.0}}), 0.3);
   EXPECT_LT(exceedance_p_value({{.events = 40, .certified = 10.0}}), 1e-8);
   EXPECT_LT(exceedance_p_value({{.events = 1, .certified = 1e-6}}), 1e-3);
@@ -90,7 +90,7 @@ TEST(PeriodTallies, keep_even_and_odd_periods_apart_and_count_a_last_certificate
   EXPECT_EQ(tallies.tallies()[1].certified, 0.625);
 }
 
-TEST(Exceedance, refuses_what_cannot_be) {
+TEST(Exceedance, refuses_impossible_arguments) {
   EXPECT_THROW((void)exceedance_p_value({}), std::invalid_argument);
   EXPECT_THROW((void)exceedance_p_value({{.events = -1, .certified = 0.0}}), std::invalid_argument);
   EXPECT_THROW((void)exceedance_p_value({{.events = 0, .certified = -0.1}}), std::invalid_argument);

@@ -31,7 +31,7 @@ TEST(SortedQuantiles, of_nothing_are_not_numbers) {
   for (const double value : quantiles.values()) EXPECT_TRUE(std::isnan(value));
 }
 
-TEST(SortedQuantiles, refuse_what_cannot_be) {
+TEST(SortedQuantiles, refuse_impossible_arguments) {
   EXPECT_THROW(SortedQuantiles(-1, {0.5}), std::invalid_argument);
   EXPECT_THROW(SortedQuantiles(1, {0.5, 0.4}), std::invalid_argument);
   EXPECT_THROW(SortedQuantiles(1, {1.1}), std::invalid_argument);

@@ -67,7 +67,7 @@ TEST(RankSelection, reads_the_stream_at_most_five_times) {
   EXPECT_EQ(source.readings, 2);
 }
 
-TEST(RankSelection, refuses_ranks_that_there_are_none_of) {
+TEST(RankSelection, refuses_ranks_out_of_range) {
   CountedStream source{.values = {1.0, 2.0}};
   EXPECT_THROW((void)values_at_ranks(source.stream(), 2, {0}), std::invalid_argument);
   EXPECT_THROW((void)values_at_ranks(source.stream(), 2, {3}), std::invalid_argument);

@@ -77,7 +77,7 @@ TEST(SkewedMean, knows_nothing_of_fewer_than_two_positive_numbers) {
   }
 }
 
-TEST(SkewedMean, refuses_what_is_no_estimate) {
+TEST(SkewedMean, refuses_invalid_estimates) {
   EXPECT_THROW((void)skewed_mean_interval({1.0, -1.0}, 0.005), std::invalid_argument);
   EXPECT_THROW((void)skewed_mean_interval({1.0, std::numeric_limits<double>::infinity()}, 0.005),
                std::invalid_argument);

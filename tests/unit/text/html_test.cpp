@@ -15,7 +15,7 @@ TEST(EscapeHtml, text_of_any_script_is_kept) {
   EXPECT_EQ(escape_html(text), text);
 }
 
-TEST(EscapeHtml, bytes_that_are_no_utf8_are_replaced_one_by_one) {
+TEST(EscapeHtml, bytes_that_are_not_utf8_are_replaced_one_by_one) {
   EXPECT_EQ(escape_html("a\xFFz"), "a\xEF\xBF\xBDz");
   EXPECT_EQ(escape_html("\xC3"), "\xEF\xBF\xBD");                                  // truncated
   EXPECT_EQ(escape_html("\xC0\xBC"), "\xEF\xBF\xBD\xEF\xBF\xBD");                  // overlong '<'

@@ -23,7 +23,7 @@ TEST(FormatNumber, others_have_a_power_of_ten) {
   EXPECT_EQ(format_number(-4.0e12, 2), "−4.0 × 10¹²");
 }
 
-TEST(FormatNumber, what_is_not_finite_is_said) {
+TEST(FormatNumber, names_what_is_not_finite) {
   EXPECT_EQ(format_number(kInfinity), "∞");
   EXPECT_EQ(format_number(-kInfinity), "−∞");
   EXPECT_EQ(format_number(std::numeric_limits<double>::quiet_NaN()), "not a number");
@@ -59,7 +59,7 @@ TEST(FormatFixed, zero_has_no_sign) {
   EXPECT_EQ(format_fixed(-2.5, 1), "−2.5");
 }
 
-TEST(FormatPercent, says_none_and_all_only_where_it_is_so) {
+TEST(FormatPercent, shows_0_and_100_only_where_exact) {
   EXPECT_EQ(format_percent(0.0), "0");
   EXPECT_EQ(format_percent(1.0), "100");
   EXPECT_EQ(format_percent(1e-9), "<0.01");

@@ -118,7 +118,7 @@ TEST(Summary, time_to_target_is_that_of_every_drive_that_ended_at_it) {
   EXPECT_FALSE(EpisodeView(trace).summary().time_to_target.has_value());
 }
 
-TEST(Outcomes, are_told_in_the_order_of_their_names_and_unknown_ones_last) {
+TEST(Outcomes, are_listed_in_the_order_of_their_names_and_unknown_ones_last) {
   const auto ordered =
       in_order({{"collision", 2}, {"fault", 0}, {"left_safe_set", 1}, {"reached", 7}});
   ASSERT_EQ(ordered.size(), 4U);

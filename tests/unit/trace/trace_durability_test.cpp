@@ -88,7 +88,7 @@ TEST_F(TraceDurability, a_writer_that_is_given_up_leaves_the_partial_file_and_th
   EXPECT_EQ(read_trace(path() + ".partial").steps.size(), 1U);
 }
 
-TEST_F(TraceDurability, a_path_that_cannot_be_written_is_named_with_the_systems_words) {
+TEST_F(TraceDurability, a_path_that_cannot_be_written_is_named_with_the_systems_message) {
   const Trace trace = testing::example_trace({.steps = 1});
   try {
     write_trace(path("no/such/folder/episode.h5"), trace);
@@ -136,7 +136,7 @@ TEST_F(TraceDurability, a_disk_that_is_full_is_an_error_at_whatever_size_it_come
   }
 }
 
-TEST_F(TraceDurability, files_that_are_no_traces_are_refused_by_name) {
+TEST_F(TraceDurability, files_that_are_not_traces_are_refused_by_name) {
   EXPECT_THAT(refusal(path("missing.h5")), HasSubstr("missing.h5: found no file"));
   EXPECT_THAT(refusal(folder_.path()), HasSubstr("found a folder"));
   write_bytes(path("text.h5"), "name: dubins\n");

@@ -160,7 +160,7 @@ Outcome outcome_read(const Trace& trace, const std::string& recorded, const std:
   return read_trace(file + "-old.h5").outcome;
 }
 
-TEST_F(TraceFile, the_former_word_for_unsafe_becomes_what_the_states_say) {
+TEST_F(TraceFile, the_old_outcome_name_for_unsafe_becomes_what_the_states_say) {
   Trace trace = testing::example_trace();
   EXPECT_THROW((void)outcome_read(trace, "left_safe_set", path()), InputError);
   trace.final_state = Eigen::Vector3d(3.0, 4.0, 0.0);  // in an obstacle
@@ -170,7 +170,7 @@ TEST_F(TraceFile, the_former_word_for_unsafe_becomes_what_the_states_say) {
   EXPECT_THROW((void)outcome_read(trace, "left_the_safe_set", path()), InputError);
 }
 
-TEST_F(TraceFile, a_former_drive_that_went_on_after_it_was_unsafe_is_no_success_either) {
+TEST_F(TraceFile, an_old_drive_that_continued_after_an_unsafe_state_is_not_a_success_either) {
   Trace trace = testing::example_trace();
   EXPECT_EQ(outcome_read(trace, "timeout", path()), Outcome::kTimeout);
   EXPECT_EQ(outcome_read(trace, "reached", path()), Outcome::kReached);
@@ -247,7 +247,7 @@ TEST_F(TraceFile, a_scenario_text_beyond_the_size_of_a_plain_attribute_is_kept) 
   EXPECT_EQ(read_trace(path()).scenario_text, trace.scenario_text);
 }
 
-TEST_F(TraceFile, every_dataset_says_its_units_and_names_every_axis) {
+TEST_F(TraceFile, every_dataset_names_its_units_and_every_axis) {
   const Trace trace = testing::example_trace();
   write_trace(path(), trace);
   const Hdf5File file = Hdf5File::open(path());

@@ -264,7 +264,7 @@ TEST(episode_frames, raw_points_are_the_stepped_ones_with_the_noise) {
   EXPECT_TRUE(EpisodeFrames(EpisodeView(trace)).at(0.2).raw_points.empty());
 }
 
-TEST(episode_frames, too_many_particles_are_thinned_and_a_row_says_so) {
+TEST(episode_frames, too_many_particles_are_thinned_with_a_note_in_a_row) {
   Trace trace = straight_trace();
   constexpr Eigen::Index kMany = 7000;  // per stage, three stages
   for (StageParticles& stage : trace.steps[0].particles) {

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-TEST(episode_hud, what_is_no_bound_is_not_called_one) {
+TEST(episode_hud, what_is_not_a_bound_is_not_called_one) {
   Trace trace = straight_trace();
   trace.scenario.disturbance.sensor = Eigen::Matrix3d::Identity();
   const EpisodeView view(trace);
@@ -42,7 +42,7 @@ TEST(episode_hud, speed_is_the_plants_and_neither_the_models_constant_nor_the_no
   EXPECT_THAT(row_of(frames.at(0.35), "speed"), HasSubstr("1.50"));
 }
 
-TEST(episode_hud, a_collision_is_told_when_it_was_and_as_an_alarm) {
+TEST(episode_hud, a_collision_is_shown_with_its_time_and_as_an_alarm) {
   Trace trace = straight_trace();
   EXPECT_FALSE(EpisodeFrames(EpisodeView(trace)).at(0.6).alarm);
   trace.scenario.safe_set.bounds.upper[0] = 2.5 * kStride;  // left between 0.2 s and 0.3 s
@@ -91,7 +91,7 @@ TEST(episode_hud, planning_time_has_the_deadline_as_its_limit) {
       EpisodeFrames(EpisodeView(trace)).at(0.2).charts.at(0).limit);  // a scenario has none
 }
 
-TEST(episode_hud, limits_of_the_risk_are_said_to_be_kept_or_exceeded) {
+TEST(episode_hud, risk_limits_are_shown_as_kept_or_exceeded) {
   Trace trace = straight_trace();  // next-step certificates 1e-3, 2e-3, …
   EXPECT_EQ(row_of(EpisodeFrames(EpisodeView(trace)).at(0.25), "risk limit"), "no row risk limit");
   trace.scenario.risk = {.stage = 0.5, .mission = 0.005};

@@ -88,7 +88,7 @@ TEST(episode_painter, headings_name_scenario_plant_and_policy) {
   EXPECT_EQ(EpisodePictures(view, kSmall).scenes().at(0).heading, "");
 }
 
-TEST(episode_painter, refuses_cameras_that_are_none) {
+TEST(episode_painter, refuses_unknown_cameras) {
   const Trace trace = straight_trace();
   const EpisodeView view(trace);
   const EpisodePictures pictures(view, seen_by("front"));

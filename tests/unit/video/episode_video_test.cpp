@@ -82,7 +82,7 @@ TEST(episode_video, part_of_an_episode_has_the_length_of_the_part) {
   EXPECT_LT(difference / static_cast<double>(still.rgb.size()), 4.0);  // out of 255, lossy coding
 }
 
-TEST(episode_video, speeds_and_times_that_are_none_are_refused_and_leave_no_file) {
+TEST(episode_video, invalid_speeds_and_times_are_refused_and_leave_no_file) {
   const auto folder = render::fresh_folder();
   const auto refused = [&](double speed, double from, double to) {
     EpisodeVideoOptions options = kSmallVideo;
@@ -115,7 +115,7 @@ TEST(episode_video, every_format_shows_the_whole_episode) {
   }
 }
 
-TEST(episode_video, timings_say_what_was_made_and_what_it_cost) {
+TEST(episode_video, timings_list_what_was_made_and_what_it_cost) {
   Trace trace = straight_trace();
   for (StepRecord& step : trace.steps) {
     step.timing.simulate = 2.5;
@@ -152,7 +152,7 @@ TEST(episode_video, vehicle_that_cannot_be_loaded_ends_it_without_a_video) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(episode_video, what_cannot_be_drawn_is_said_instead) {
+TEST(episode_video, what_cannot_be_drawn_is_named_instead) {
   const std::string path = ::testing::TempDir() + "nothing.mp4";
   const auto message_of = [&path](const Scenario& scenario) -> std::string {
     Trace trace;

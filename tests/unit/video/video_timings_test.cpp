@@ -38,7 +38,7 @@ TEST(video_timings, are_read_as_they_were_written) {
   EXPECT_EQ(read.speed, 0.25);
 }
 
-TEST(video_timings, what_is_no_such_file_is_refused_with_its_name) {
+TEST(video_timings, a_file_of_another_kind_is_refused_by_name) {
   const testing::TemporaryFolder folder;
   std::string stands_still = video_json({.frames = 1, .fps = 1, .speed = 0.0});
   for (const std::string& text : {std::string(), std::string("{"), std::string("[]"),

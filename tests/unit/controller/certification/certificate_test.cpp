@@ -180,7 +180,7 @@ TEST(Certificate, surrogate_speaks_of_a_restricted_heading) {
   }
 }
 
-TEST(Certificate, holds_and_says_something_for_a_bicycle) {
+TEST(Certificate, holds_and_is_informative_for_a_bicycle) {
   Generator generator(132);
   for (const bool closed_loop : {false, true}) {
     const DrivenBicycle driven(closed_loop);

@@ -160,7 +160,7 @@ TEST(PlantSurrogate, regions_hold_the_state_where_only_the_error_moves_it) {
 
 /// An error that depends on the state, which itself is Gaussian and wide: it pushes everything near
 /// the wall into it. Counting that width as smoothing would be wrong.
-TEST(PlantCertificate, holds_for_an_error_that_is_none_but_near_the_wall) {
+TEST(PlantCertificate, holds_for_an_error_that_is_zero_except_near_the_wall) {
   constexpr double kWall = 3.0;   // m, and standard deviations
   constexpr double kReach = 0.3;  // m, of the error
   constexpr double kPush = 0.05;  // m, five deviations of the noise

@@ -93,7 +93,7 @@ TEST(WorstCase, of_a_measure_uses_the_distance_to_walls_and_obstacles) {
   EXPECT_NEAR(worst_case_probability(measure, safe_set, 0.5), 0.25, kRounding);
 }
 
-TEST(WorstCase, refuses_what_makes_no_sense) {
+TEST(WorstCase, refuses_invalid_arguments) {
   const Eigen::Vector2d distances(1.0, 2.0);
   const Eigen::Vector2d weights(0.5, 0.5);
   const double nan = std::nan("");

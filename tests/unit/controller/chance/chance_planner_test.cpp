@@ -101,7 +101,7 @@ TEST_P(EveryConstraint, answers_when_there_is_no_time) {
 INSTANTIATE_TEST_SUITE_P(table, EveryConstraint, ::testing::ValuesIn(all_constraints()),
                          [](const auto& each) { return each.param; });
 
-TEST(ChancePlanner, refuses_settings_that_make_no_sense) {
+TEST(ChancePlanner, refuses_invalid_settings) {
   const auto car = dubins_car();
   const auto refuses = [&](auto&& change) {
     ChancePlannerSettings settings = settings_of("cone");

@@ -67,7 +67,7 @@ TEST(Controllers, decide_within_the_bounds_and_the_same_after_a_reset) {
   }
 }
 
-TEST(Controllers, have_in_every_decision_what_the_table_says_and_nothing_else) {
+TEST(Controllers, fill_exactly_the_parts_of_a_decision_that_the_table_lists) {
   const auto car = dubins_car();
   const Gaussian belief = dubins_belief();
   const Eigen::VectorXd seen = belief.mean;

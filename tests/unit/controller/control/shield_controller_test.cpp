@@ -79,7 +79,7 @@ TEST(Shield, says_where_no_plan_is_within_the_limit) {
   EXPECT_EQ(decision.status, SolverStatus::kRiskExceeded);
 }
 
-TEST(Shield, goes_about_every_other_controller_and_none_of_its_own_kind) {
+TEST(Shield, wraps_every_other_controller_but_not_another_shield) {
   const auto car = dubins_car();
   ControllerSettings settings = settings_beside(1.9);
   const Gaussian belief = small_belief();

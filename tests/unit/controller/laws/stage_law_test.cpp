@@ -160,7 +160,7 @@ TEST(HermiteBasis, polynomials_are_orthonormal) {
   EXPECT_EQ(values.row(2), Eigen::RowVectorXd(grid.nodes.row(1)));
 }
 
-TEST(HermiteBasis, refuses_what_makes_no_sense) {
+TEST(HermiteBasis, refuses_invalid_arguments) {
   EXPECT_THROW(HermiteBasis(0, 2), std::invalid_argument);
   EXPECT_THROW(HermiteBasis(2, 0), std::invalid_argument);
   EXPECT_THROW(HermiteBasis(30, 8), std::invalid_argument);

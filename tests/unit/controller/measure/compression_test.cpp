@@ -149,7 +149,7 @@ TEST(Compression, one_point_stays_as_it_is) {
   EXPECT_EQ(compression.w2, 0.0);
 }
 
-TEST(Compression, refuses_what_is_no_measure) {
+TEST(Compression, refuses_invalid_measures) {
   Generator generator(27);
   const DiscreteMeasure good = random_measure(generator, 2, 10);
   EXPECT_THROW((void)compress(good, 0), std::invalid_argument);

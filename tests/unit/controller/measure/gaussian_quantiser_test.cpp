@@ -180,7 +180,7 @@ TEST(GaussianQuantiser, kinds_have_the_names_of_the_table) {
   EXPECT_THROW((void)quantiser_kind("Lloyd"), std::invalid_argument);
 }
 
-TEST(GaussianQuantiser, refuses_what_is_no_gaussian) {
+TEST(GaussianQuantiser, refuses_invalid_gaussians) {
   const double nan = std::nan("");
   const Eigen::Vector2d mean(0.0, 0.0);
   const Eigen::Matrix2d identity = Eigen::Matrix2d::Identity();

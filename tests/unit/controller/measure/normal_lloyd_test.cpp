@@ -139,7 +139,7 @@ TEST(SpreadQuantiser, is_the_product_on_the_line_and_beyond_its_grids) {
   EXPECT_EQ(large.levels.size(), 2U);
 }
 
-TEST(SpreadQuantiser, refuses_what_is_no_gaussian_and_no_budget) {
+TEST(SpreadQuantiser, refuses_invalid_gaussians_and_budgets) {
   EXPECT_THROW((void)quantise(standard_normal(2), 0, QuantiserKind::kLloyd), std::invalid_argument);
   Gaussian indefinite = standard_normal(2);
   indefinite.covariance(0, 0) = -1.0;

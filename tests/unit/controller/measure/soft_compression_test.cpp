@@ -127,7 +127,7 @@ TEST(SoftCompression, says_whether_its_centres_came_to_rest) {
   EXPECT_TRUE(compress_soft(measure, {.count = 10, .sharpness = 20.0, .rounds = 10000}).converged);
 }
 
-TEST(SoftCompression, refuses_bad_settings_and_what_is_no_measure) {
+TEST(SoftCompression, refuses_invalid_settings_and_measures) {
   Generator generator(65);
   const DiscreteMeasure good = random_measure(generator, 2, 10);
   const double infinity = std::numeric_limits<double>::infinity();

@@ -209,7 +209,7 @@ TEST(Wasserstein, of_quantised_gaussians_is_within_their_errors_of_the_gaussians
   EXPECT_NEAR(discrete, exact, 0.05);  // errors of 0.15 and 0.05, in different directions
 }
 
-TEST(Wasserstein, refuses_what_is_no_measure_or_of_another_dimension) {
+TEST(Wasserstein, refuses_invalid_measures_and_other_dimensions) {
   Generator generator(39);
   const DiscreteMeasure good = random_measure(generator, 2, 5);
   DiscreteMeasure undefined = good;

@@ -137,7 +137,7 @@ TEST(AngularTarget, settings_keep_the_target_as_it_was_given) {
   EXPECT_EQ(planner.settings().cost.target, Eigen::Vector3d(2.0, 1.0, 0.4));
 }
 
-TEST(AngularTarget, angles_that_are_no_states_are_refused) {
+TEST(AngularTarget, angles_that_are_not_states_are_refused) {
   const auto car = dubins_car();
   EXPECT_THROW(Planner(*car, heading_settings({3})), std::invalid_argument);
   EXPECT_THROW(Planner(*car, heading_settings({-1})), std::invalid_argument);

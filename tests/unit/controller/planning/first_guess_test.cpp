@@ -68,7 +68,7 @@ TEST(FirstGuess, compares_the_shifted_plan_with_the_cheapest_constant) {
 }
 
 // A target beside a wall: without noise, a careful plan costs more than a careless constant input.
-TEST(FirstGuess, a_plan_that_is_careful_because_of_the_noise_is_gone_on_with) {
+TEST(FirstGuess, a_plan_that_is_careful_because_of_the_noise_is_continued) {
   const auto car = dubins_car();
   PlannerSettings settings = block_settings();
   settings.safe_set.bounds.lower[1] = -0.8;

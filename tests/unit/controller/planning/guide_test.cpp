@@ -56,7 +56,7 @@ TEST(TravelField, the_way_leads_through_the_door_of_a_dear_wall) {
   EXPECT_GT(field.cost_of_line({1.0, 1.0}, {9.0, 1.0}, kInfinity), 100.0);
 }
 
-TEST(TravelField, refuses_prices_that_are_none) {
+TEST(TravelField, refuses_invalid_prices) {
   EXPECT_THROW(TravelField(ten_metres(), Eigen::ArrayXXd::Zero(101, 101), {1.0, 1.0}),
                std::invalid_argument);
   EXPECT_THROW(TravelField(ten_metres(), Eigen::ArrayXXd::Ones(101, 100), {1.0, 1.0}),

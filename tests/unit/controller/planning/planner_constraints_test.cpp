@@ -74,7 +74,7 @@ TEST(PlannerConstraints, every_particle_is_kept_off_a_wall_near_the_path) {
   }
 }
 
-TEST(PlannerConstraints, a_room_that_is_too_narrow_is_said_to_be) {
+TEST(PlannerConstraints, a_room_that_is_too_narrow_is_reported) {
   const auto car = dubins_car();
   for (const char* propagator : {"noise_free", "mixture"}) {
     PlannerSettings settings = wall_settings(0.01, propagator);

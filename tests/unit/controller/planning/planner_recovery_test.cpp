@@ -112,7 +112,7 @@ TEST(PlannerRecovery, a_bicycle_far_beyond_the_speeds_of_its_model_is_followed_b
   }
 }
 
-TEST(PlannerRecovery, a_bicycle_at_its_pole_is_no_exception) {
+TEST(PlannerRecovery, a_bicycle_at_its_pole_throws_nothing) {
   const auto car = bicycle();
   for (const char* propagator : {"mixture", "noise_free"}) {
     PlannerSettings settings = bicycle_settings(*car);

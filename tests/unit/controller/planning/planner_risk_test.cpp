@@ -266,7 +266,7 @@ PlannerSettings before_a_wall(RiskOtherwise otherwise) {
   return settings;
 }
 
-TEST(PlannerRisk, brakes_where_it_is_told_to_and_can) {
+TEST(PlannerRisk, brakes_where_asked_and_possible) {
   const auto mass = models::make_dynamics("double_integrator", {}, 0.1);
   const Gaussian moving{.mean = Eigen::Vector2d(0.0, 1.0),
                         .covariance = 1e-4 * Eigen::Matrix2d::Identity()};
@@ -282,7 +282,7 @@ TEST(PlannerRisk, brakes_where_it_is_told_to_and_can) {
   EXPECT_THROW((void)risk_otherwise("pray"), std::invalid_argument);
 }
 
-TEST(PlannerRisk, the_previous_plan_goes_on_where_that_is_wanted) {
+TEST(PlannerRisk, the_previous_plan_continues_where_asked) {
   const auto car = dubins_car();
   PlannerSettings settings = limited(0.05);
   settings.otherwise = RiskOtherwise::kPrevious;

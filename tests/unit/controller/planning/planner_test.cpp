@@ -266,7 +266,7 @@ TEST(Planner, prescribes_given_inputs_without_optimising) {
   EXPECT_LT(planner.plan(dubins_belief()).cost.total(), prescribed);
 }
 
-TEST(Planner, improves_the_plan_of_another_planner_and_goes_on_from_it) {
+TEST(Planner, improves_the_plan_of_another_planner_and_continues_from_it) {
   const auto car = dubins_car();
   PlannerSettings starved = dubins_settings();
   starved.max_evaluations = 2;

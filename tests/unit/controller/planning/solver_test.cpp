@@ -188,7 +188,7 @@ TEST_P(EverySolver, exceptions_of_the_cost_pass_through) {
   EXPECT_THROW(solver_->minimise(problem, VectorXd::Zero(6), {}), std::runtime_error);
 }
 
-TEST_P(EverySolver, problems_that_make_no_sense_are_refused) {
+TEST_P(EverySolver, invalid_problems_are_refused) {
   const OcpProblem good = boxed_bowl(VectorXd::Zero(4));
   EXPECT_THROW(solver_->minimise(good, VectorXd::Zero(5), {}), std::invalid_argument);
   EXPECT_THROW(solver_->minimise(good, VectorXd::Zero(4), {.max_evaluations = 0}),

@@ -50,7 +50,7 @@ Eigen::Matrix2Xd star(int points, Generator& generator) {
   return corners;
 }
 
-TEST(PlanarShape, refuses_what_is_none_and_says_what_is_expected) {
+TEST(PlanarShape, refuses_invalid_shapes_and_says_what_is_expected) {
   const double infinite = std::numeric_limits<double>::infinity();
   const auto why = [](const PlanarShape& shape) {
     try {

@@ -175,7 +175,7 @@ TEST(RoadRegion, bound_without_an_error_is_no_less_than_the_truth) {
   }
 }
 
-TEST(RoadWalls, edges_that_meet_are_told) {
+TEST(RoadWalls, edges_that_meet_are_reported) {
   // A figure of eight.
   Eigen::Matrix2Xd points(2, 40);
   for (int i = 0; i < 40; ++i) {
@@ -191,7 +191,7 @@ TEST(RoadWalls, edges_that_meet_are_told) {
   EXPECT_FALSE(where_edges_meet(edges_about(circuit(60), widths_of(circuit(60)), 2.0)));
 }
 
-TEST(RoadWalls, a_bend_tighter_than_the_width_is_told) {
+TEST(RoadWalls, a_bend_tighter_than_the_width_is_reported) {
   const ArcPath path = circuit(60);
   RoadWidths widths = widths_of(path);
   EXPECT_FALSE(folded_edge(path, widths));

@@ -202,7 +202,7 @@ TEST(MotionFilter, certain_motion_is_forecast_for_certain_whatever_is_seen) {
   EXPECT_NEAR(place.turn, 0.5 * std::numbers::pi, 1e-12);
 }
 
-TEST(MotionFilter, refuses_what_makes_no_sense) {
+TEST(MotionFilter, refuses_invalid_arguments) {
   EXPECT_THROW(MotionFilter(walker(), 0.0), std::invalid_argument);
   EXPECT_THROW(MotionFilter(ObstacleMotion{.ways = {}}, 0.1), std::invalid_argument);
   MotionFilter filter(walker(), kTimeStep);

@@ -56,7 +56,7 @@ TEST(GaussianSampler, takes_a_covariance_without_full_rank) {
   EXPECT_EQ(none.sample(key_at(0)), Eigen::VectorXd(direction));
 }
 
-TEST(GaussianSampler, refuses_what_is_no_covariance) {
+TEST(GaussianSampler, refuses_invalid_covariances) {
   const Eigen::VectorXd mean = Eigen::VectorXd::Zero(2);
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();
   EXPECT_NO_THROW(GaussianSampler(mean, covariance));
