@@ -174,7 +174,7 @@ TEST(OutsideController, is_compared_on_its_plants_as_any_other) {
   EXPECT_EQ(json["plants"]["analytic"]["episodes"], 3);
 }
 
-TEST(OutsideController, that_hangs_does_not_keep_ctrl_c_from_being_heard) {
+TEST(OutsideController, that_hangs_does_not_block_ctrl_c) {
   const TemporaryFolder folder;
   const std::string pids = folder / "pids";
   const std::string scenario = scenario_in(folder, "{mode: hang, pids: " + pids + "}");

@@ -141,7 +141,7 @@ TEST(Run, drives_past_shapes_within_its_limit_of_the_risk) {
               HasSubstr("- {box: {centre: [3, 3], size: [2, 1.6], angle: 0.5}}"));
 }
 
-TEST(Run, tells_an_outcome_that_it_was_asked_to_tell) {
+TEST(Run, fails_on_an_outcome_of_fail_on) {
   const TemporaryFolder folder;
   EXPECT_EQ(run_qsmpc(small_run(folder.path(), {"--no-video", "--fail-on", "timeout"})).exit_code,
             1);
@@ -150,7 +150,7 @@ TEST(Run, tells_an_outcome_that_it_was_asked_to_tell) {
       0);
 }
 
-TEST(Run, tells_that_a_limit_of_the_risk_was_exceeded_where_it_was_asked_to) {
+TEST(Run, fails_on_an_exceeded_risk_limit_if_asked) {
   const TemporaryFolder folder;
   const auto exit_code = [&](const char* risk, const char* fail_on) {
     return run_qsmpc(small_run(folder.path(), {"--no-video", "--force", "--set",
@@ -322,7 +322,7 @@ bool catches_sigterm(pid_t process) {
   return (std::stoull(status.substr(at + 7), nullptr, 16) >> (SIGTERM - 1) & 1U) == 1U;
 }
 
-TEST(Run, a_plant_that_takes_very_many_steps_hears_that_it_is_to_end) {
+TEST(Run, a_plant_that_takes_very_many_steps_can_be_interrupted) {
   const TemporaryFolder folder;
   const std::string out = folder.path() + "/out";
   // 20 million steps before the first period.

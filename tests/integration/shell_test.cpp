@@ -72,7 +72,7 @@ TEST(Completion, zsh_reads_its_script) {
   EXPECT_THAT(text, HasSubstr("(auto osmesa egl)"));
 }
 
-TEST(Manual, has_a_page_for_every_command_that_groff_has_no_complaint_of) {
+TEST(Manual, has_a_page_for_every_command_that_groff_accepts) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_qsmpc({"help", "--write-manual", folder.path()}).exit_code, 0);
   const std::set<std::string> pages = files_in(folder.path());

@@ -18,7 +18,7 @@ namespace folder_lock_test {
 
 using ::testing::HasSubstr;
 
-TEST(FolderLock, tells_the_second_who_holds_the_folder) {
+TEST(FolderLock, names_the_holder_to_whoever_comes_second) {
   const testing::TemporaryFolder folder;
   const FolderLock first(folder.path());
   try {
@@ -30,7 +30,7 @@ TEST(FolderLock, tells_the_second_who_holds_the_folder) {
   }
 }
 
-TEST(FolderLock, is_seen_by_those_who_only_ask) {
+TEST(FolderLock, is_visible_to_those_who_only_query_it) {
   const testing::TemporaryFolder folder;
   EXPECT_FALSE(lock_holder(folder.path()));
   {

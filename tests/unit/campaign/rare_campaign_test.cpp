@@ -96,7 +96,7 @@ TEST(RareCampaign, stores_a_run_for_each_seed_the_same_for_any_number_of_jobs) {
   StoreReader(one.path()).verify();
 }
 
-TEST(RareCampaign, goes_on_where_it_was_interrupted) {
+TEST(RareCampaign, resumes_where_it_was_interrupted) {
   const TemporaryFolder whole;
   const TemporaryFolder parts;
   (void)run_campaign(rare_campaign(), whole.path(), {});

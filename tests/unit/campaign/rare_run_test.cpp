@@ -106,7 +106,7 @@ TEST(RareRun, says_the_same_without_certificates) {
   EXPECT_EQ(with, without);
 }
 
-TEST(RareRun, is_heard_within_a_period_when_it_is_to_stop) {
+TEST(RareRun, stops_within_a_period_when_interrupted) {
   int asked = 0;
   const auto row = rare_run(held_point("0.6"), {.splitting = {.particles = 20}}, 3,
                             [&] { return ++asked > 25; });

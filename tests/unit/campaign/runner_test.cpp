@@ -86,7 +86,7 @@ TEST(CampaignRunner, gives_the_variants_of_a_seed_the_same_random_numbers) {
   EXPECT_EQ(pairs, 3);
 }
 
-TEST(CampaignRunner, goes_on_where_it_was_stopped) {
+TEST(CampaignRunner, resumes_where_it_was_stopped) {
   const TemporaryFolder stopped;
   const TemporaryFolder whole;
   std::atomic<int> episodes = 0;

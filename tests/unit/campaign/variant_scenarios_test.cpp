@@ -36,7 +36,7 @@ TEST(VariantScenarios, read_their_file_once) {
   EXPECT_EQ(scenarios.load(path, {})->controller.horizon, 8) << "no setting stays";
 }
 
-TEST(PlantChecks, a_noise_that_is_added_to_the_state_makes_no_other_plant) {
+TEST(PlantChecks, noise_added_to_the_state_does_not_change_the_plant) {
   const TemporaryFolder folder;
   const std::string vehicle =
       folder.file("body.xml", "<mujoco><worldbody><body/></worldbody></mujoco>");

@@ -231,7 +231,7 @@ TEST_F(LeaseQueues, take_over_a_claim_that_was_never_written_to_its_end) {
   EXPECT_EQ(other->claim(), 0);
 }
 
-TEST_F(LeaseQueues, say_who_has_what) {
+TEST_F(LeaseQueues, list_who_holds_which_lease) {
   const auto one = queue({.task = 4, .start = 2, .launch = 3, .host = "n1", .process = 17}, 3);
   ASSERT_EQ(one->claim(), 0);
   ASSERT_EQ(one->claim(), 1);
@@ -245,7 +245,7 @@ TEST_F(LeaseQueues, say_who_has_what) {
   EXPECT_FALSE(claims[0].given_back);
 }
 
-TEST_F(LeaseQueues, say_so_where_the_folder_has_vanished) {
+TEST_F(LeaseQueues, report_that_the_folder_has_vanished) {
   const auto one = queue({.task = 1}, 3);
   ASSERT_EQ(one->claim(), 0);
   fs::remove_all(folder / kClusterFolder);

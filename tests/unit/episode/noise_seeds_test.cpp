@@ -81,7 +81,7 @@ TEST(NoiseSeedsOfADrive, change_nothing_where_there_are_none) {
   EXPECT_EQ(plain.scenario_text, none.scenario_text);
 }
 
-TEST(NoiseSeedsOfADrive, go_on_without_certificates_as_with_them) {
+TEST(NoiseSeedsOfADrive, continue_without_certificates_as_with_them) {
   const Scenario scenario = noisy_scenario({"plant.kind=analytic", "risk={mission: 0.5}"});
   const Trace certified = run_episode(scenario, {.seed = 7});
   const Trace bare = run_episode(scenario, {.seed = 7, .certify = false});

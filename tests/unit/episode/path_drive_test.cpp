@@ -41,7 +41,7 @@ std::string circle(double radius, const std::string& widths) {
   return "[" + rows + "]";
 }
 
-TEST(PathDrive, ends_after_its_laps_and_times_them) {
+TEST(PathDrive, stops_after_its_laps_and_times_them) {
   const Scenario scenario = car_along("{path: " + circle(2.0, ", 0.5, 0.5") + ", laps: 2}");
   const Trace trace = run_episode(scenario, {.seed = 1});
   const EpisodeView view(trace);

@@ -142,7 +142,7 @@ TEST(MapFigure, the_area_of_a_dot_is_in_proportion_to_its_weight) {
   EXPECT_NEAR(large / small, 2.0, 0.1);  // of the diameters, which come in steps
 }
 
-TEST(MapFigure, one_heavy_dot_does_not_hide_the_map) {
+TEST(MapFigure, a_single_heavy_dot_does_not_cover_the_map) {
   PlaneMap map = square_map();
   map.clouds = {{.points = Matrix2Xd::Constant(2, 1, 5.0)}};
   const double diameter = numbers_of(map_drawing(map), "stroke-width=\"" + kNumber + "\"").at(0);

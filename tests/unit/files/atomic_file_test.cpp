@@ -160,7 +160,7 @@ TEST(MakeOutputFolder, makes_all_folders_above_and_accepts_one_that_is_there) {
   EXPECT_TRUE(std::filesystem::is_directory(folder / "a/b/c"));
 }
 
-TEST(MakeOutputFolder, says_what_is_in_the_way) {
+TEST(MakeOutputFolder, names_what_is_in_the_way) {
   const TemporaryFolder folder;
   const std::string file = folder.file("file", "");
   EXPECT_THAT(io_error_of([&] { make_output_folder(file); }), HasSubstr("Not a directory"));

@@ -26,7 +26,7 @@ TEST(MeasuredModelError, of_residuals_that_are_all_alike_has_no_margin) {
   for (const Eigen::VectorXd& norms : error.higher) EXPECT_TRUE(norms.isApprox(size, 1e-12));
 }
 
-TEST(MeasuredModelError, is_above_the_true_norms_about_as_often_as_it_says) {
+TEST(MeasuredModelError, exceeds_the_true_norms_as_often_as_its_confidence_says) {
   int too_small = 0;
   constexpr int kRuns = 100;
   for (std::uint64_t run = 0; run < kRuns; ++run) {
@@ -126,7 +126,7 @@ TEST(MeasuredModelError, of_a_single_unit_has_no_offset) {
 }
 
 // About the mean of the same units that the error is measured from.
-TEST(MeasuredModelError, about_an_offset_is_above_the_true_norms_about_as_often_as_it_says) {
+TEST(MeasuredModelError, about_an_offset_exceeds_the_true_norms_as_often_as_its_confidence_says) {
   int too_small = 0;
   constexpr int kRuns = 100;
   for (std::uint64_t run = 0; run < kRuns; ++run) {

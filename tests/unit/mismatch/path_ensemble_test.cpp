@@ -210,7 +210,7 @@ TEST(PlantPaths, a_drawn_vehicle_that_the_simulator_refuses_is_counted_and_ends_
   EXPECT_THROW((void)PlantPool(make), SimulatorError);
 }
 
-TEST(PlantPaths, are_given_up_when_asked) {
+TEST(PlantPaths, stop_when_asked) {
   const Planned planned(testing::short_scenario());
   PlantPool pool = testing::altered_plants(planned.scenario, Eigen::Vector3d::Zero());
   SharedWork work(path_batches(kPaths), [] { return true; }, {});

@@ -47,7 +47,7 @@ TEST(MakeDynamics, every_parameter_has_a_unit) {
   }
 }
 
-TEST(MakeDynamics, senseless_time_steps_are_refused) {
+TEST(MakeDynamics, invalid_time_steps_are_refused) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const SystemEntry& entry : systems()) {
     for (const double time_step : {0.0, -0.1, infinity, std::nan("")}) {
@@ -56,7 +56,7 @@ TEST(MakeDynamics, senseless_time_steps_are_refused) {
   }
 }
 
-TEST(MakeDynamics, senseless_speeds_are_refused) {
+TEST(MakeDynamics, invalid_speeds_are_refused) {
   for (const double speed : {-1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
     EXPECT_THAT(refusal_of([&] {
                   (void)make_dynamics("dubins", {{"speed", speed}}, 0.1);

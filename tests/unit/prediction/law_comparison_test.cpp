@@ -104,7 +104,7 @@ TEST(CompareLaws, refuses_unknown_methods_and_too_few_paths) {
   EXPECT_THROW(compared({"linearised"}, 0), std::invalid_argument);
 }
 
-TEST(CompareLaws, work_that_is_given_up_leaves_the_prediction_without_it) {
+TEST(CompareLaws, interrupted_work_leaves_the_prediction_without_it) {
   const PredictionReport report = predict_scenario(
       small_scenario(), {.monte_carlo = {.samples = 5000, .should_stop = [] { return true; }},
                          .methods = {"linearised"}});

@@ -99,7 +99,7 @@ TEST(MonteCarlo, another_seed_gives_other_paths) {
   EXPECT_NE(one.stages, other.stages);
 }
 
-TEST(MonteCarlo, work_that_is_given_up_leaves_the_prediction_without_it) {
+TEST(MonteCarlo, interrupted_work_leaves_the_prediction_without_it) {
   const PredictionReport report = predict_scenario(
       testing::small_scenario(),
       {.monte_carlo = {.samples = 1'000'000'000, .should_stop = [] { return true; }}});

@@ -199,7 +199,7 @@ TEST(Laboratory, drives_the_same_on_any_number_of_threads) {
   EXPECT_NE(first.episodes[0].states, first.episodes[1].states);
 }
 
-TEST(Laboratory, drives_once_what_is_asked_for_twice) {
+TEST(Laboratory, runs_a_drive_once_that_is_requested_twice) {
   const Variant variant{.scenario = "dubins_turn", .overrides = {"limit.steps=2"}};
   Laboratory laboratory({.seeds = 2});
   const Sample& first = laboratory.sample(variant);

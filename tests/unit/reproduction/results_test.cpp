@@ -163,7 +163,7 @@ TEST(ResultsTable, has_tables_in_the_thesiss_shape_and_lists_what_has_no_place) 
   EXPECT_THAT(results_table(tabular()), ::testing::ContainsRegex("\n  alone +4 +2 +0.5\n"));
 }
 
-TEST(ResultsTable, goes_on_below_where_a_table_is_too_wide) {
+TEST(ResultsTable, continues_below_if_a_table_is_too_wide) {
   Reproduction all = tabular();
   for (int step = 2; step < 20; ++step) {
     all.experiments[0].rows.push_back(

@@ -40,7 +40,7 @@ TEST(CertificateScope, is_warned_of) {
               ElementsAre(HasSubstr("no certificate is a bound: with measurement noise")));
 }
 
-TEST(ScenarioWarnings, question_angles_that_look_like_degrees) {
+TEST(ScenarioWarnings, warn_of_angles_that_look_like_degrees) {
   EXPECT_THAT(
       scenario_warnings(minimal_with({"initial_state.mean=[0, 0, 90]"})),
       ElementsAre("initial_state.mean: heading = 90 is more than a full turn: angles are in "

@@ -76,7 +76,7 @@ TEST(RunningMean, is_that_of_the_whole_sample_also_far_from_zero) {
   EXPECT_EQ(running.count(), 100);
 }
 
-TEST(RunningMean, says_what_it_cannot_know) {
+TEST(RunningMean, is_nan_where_unknown) {
   RunningMean running;
   EXPECT_TRUE(std::isnan(running.mean()));
   running.add(1.0);

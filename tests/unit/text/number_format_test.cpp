@@ -49,7 +49,7 @@ TEST(FormatBound, a_short_decimal_is_kept) {
   EXPECT_EQ(format_bound(1.0), "1");
 }
 
-TEST(FormatBound, the_smallest_numbers_do_not_break_it) {
+TEST(FormatBound, works_for_the_smallest_numbers) {
   EXPECT_FALSE(format_bound(std::numeric_limits<double>::denorm_min()).empty());
   EXPECT_EQ(format_bound(kInfinity), "∞");
 }

@@ -7,7 +7,7 @@
 namespace qsmpc::harness {
 namespace number_parse_test {
 
-TEST(ParseInteger, takes_the_whole_text_or_nothing) {
+TEST(ParseInteger, accepts_only_the_whole_text) {
   EXPECT_EQ(parse_integer<int>("-12"), -12);
   EXPECT_EQ(parse_integer<std::uint64_t>("18446744073709551615"), UINT64_MAX);
   for (const char* text : {"", " 1", "1 ", "+1", "1.0", "0x1", "one"}) {
@@ -26,7 +26,7 @@ TEST(ParseDecimal, takes_decimal_notation_with_either_sign) {
   EXPECT_EQ(parse_decimal(".5"), 0.5);
 }
 
-TEST(ParseDecimal, refuses_everything_else) {
+TEST(ParseDecimal, refuses_any_other_notation) {
   for (const char* text : {"", "-", "--1", "+-1", "1,5", "1 ", "inf", "nan", "1e999", "0x10"}) {
     EXPECT_EQ(parse_decimal(text), std::nullopt) << text;
   }

@@ -87,7 +87,7 @@ TEST(InitialRisk, counts_the_body_and_not_the_position_alone) {
   EXPECT_LT(initial_risk(belief, safe_set), 0.1);
 }
 
-TEST(InitialRisk, of_a_known_state_is_0_or_1) {
+TEST(InitialRisk, of_a_known_state_is_zero_or_one) {
   SafeSet safe_set = corridor();
   safe_set.body = two_discs();
   Gaussian belief{.mean = Eigen::Vector3d(5.0, 0.0, 0.0), .covariance = Eigen::Matrix3d::Zero()};

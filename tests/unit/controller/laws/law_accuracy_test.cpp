@@ -247,7 +247,7 @@ double larger_marginal_w2(const StageLaw& law, const Points& paths) {
   return larger;
 }
 
-TEST(GaussianMixture, comes_to_the_truth_as_its_components_grow) {
+TEST(GaussianMixture, converges_to_the_truth_as_components_are_added) {
   constexpr int kPaths = 100'000;
   for (const double noise : {0.0, 1.0}) {
     const LawCase made = turning_car(noise);
@@ -320,7 +320,7 @@ TEST(GaussianMixture, is_not_split_where_nothing_bends) {
   }
 }
 
-TEST(PolynomialChaos, moments_come_to_the_exact_ones_as_the_order_grows) {
+TEST(PolynomialChaos, moments_converge_to_the_exact_ones_as_the_order_grows) {
   for (const double noise : {0.0, 1.0}) {
     const LawCase made = turning_car(noise);
     const Gaussian exact = turning_moments(made);

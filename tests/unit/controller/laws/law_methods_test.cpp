@@ -178,7 +178,7 @@ TEST(QuantisedLaws, are_the_predictions_of_the_planner) {
   }
 }
 
-TEST(MakeLawPropagator, refuses_unknown_names_and_senseless_settings) {
+TEST(MakeLawPropagator, refuses_unknown_names_and_invalid_settings) {
   EXPECT_THAT([] { (void)make_law_propagator("telepathy", {}); },
               ::testing::ThrowsMessage<std::invalid_argument>(::testing::AllOf(
                   ::testing::HasSubstr("telepathy"), ::testing::HasSubstr("polynomial_chaos"))));

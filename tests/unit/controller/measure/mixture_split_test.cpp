@@ -227,7 +227,7 @@ TEST(MixtureSplit, more_cells_cost_less) {
   }
 }
 
-TEST(MixtureSplit, refuses_senseless_arguments) {
+TEST(MixtureSplit, refuses_invalid_arguments) {
   const Eigen::MatrixXd good = Eigen::MatrixXd::Identity(3, 3);
   EXPECT_NO_THROW(MixtureSplitter(good, 1, 1));
   EXPECT_THROW(MixtureSplitter(good, 0, 1), std::invalid_argument);

@@ -77,7 +77,7 @@ void expect_cold_start_after(const models::Dynamics& car, const PlannerSettings&
   expect_same_plan(warm, expected);
 }
 
-TEST(PlannerRecovery, beliefs_beyond_all_measure_are_followed_by_a_cold_start) {
+TEST(PlannerRecovery, enormous_beliefs_are_followed_by_a_cold_start) {
   const auto car = dubins_car();
   for (const char* propagator : {"mixture", "compressed", "noise_free"}) {
     for (const bool optimise_gain : {false, true}) {
@@ -92,7 +92,7 @@ TEST(PlannerRecovery, beliefs_beyond_all_measure_are_followed_by_a_cold_start) {
   }
 }
 
-TEST(PlannerRecovery, slsqp_too_starts_cold_after_a_belief_beyond_all_measure) {
+TEST(PlannerRecovery, slsqp_too_starts_cold_after_an_enormous_belief) {
   const auto car = dubins_car();
   PlannerSettings settings = dubins_settings();
   settings.solver = "slsqp";

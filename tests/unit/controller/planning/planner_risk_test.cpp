@@ -197,7 +197,7 @@ PlannerSettings closed_gap(double plan) {
   return settings;
 }
 
-TEST(PlannerRisk, without_such_a_plan_the_least_risk_is_taken_and_said) {
+TEST(PlannerRisk, without_such_a_plan_the_least_risk_is_taken_and_reported) {
   const auto car = dubins_car();
   Planner planner(*car, closed_gap(0.05));
   const Plan& plan = planner.plan(near_start());

@@ -115,7 +115,7 @@ TEST(Planner, warm_start_lets_a_starved_solver_improve_from_plan_to_plan) {
   }
 }
 
-TEST(Planner, beliefs_beyond_all_measure_give_a_status_and_no_exception) {
+TEST(Planner, enormous_beliefs_give_a_status_and_no_exception) {
   const auto car = dubins_car();
   for (const char* propagator : {"compressed", "noise_free"}) {
     PlannerSettings settings = dubins_settings();
@@ -157,7 +157,7 @@ TEST(Planner, broken_model_gives_a_status_and_no_exception_and_recovers) {
   }
 }
 
-TEST(Planner, senseless_beliefs_are_refused_also_after_a_good_one) {
+TEST(Planner, invalid_beliefs_are_refused_even_after_a_valid_one) {
   const auto car = dubins_car();
   Planner planner(*car, dubins_settings());
   (void)planner.plan(dubins_belief());
@@ -175,7 +175,7 @@ TEST(Planner, senseless_beliefs_are_refused_also_after_a_good_one) {
   EXPECT_NO_THROW((void)planner.plan(dubins_belief()));
 }
 
-TEST(Planner, senseless_settings_are_refused) {
+TEST(Planner, invalid_settings_are_refused) {
   const auto car = dubins_car();
   const auto refused = [&](const char* what, const std::function<void(PlannerSettings&)>& spoil) {
     PlannerSettings settings = dubins_settings();

@@ -145,7 +145,7 @@ TEST(PointsChoice, keeps_all_points_where_no_plan_can_be_compared) {
   EXPECT_EQ(all.gap, 0.0);
 }
 
-TEST(PointsChoice, goes_on_to_the_next_waypoint) {
+TEST(PointsChoice, continues_to_the_next_waypoint) {
   // A way back over the first waypoint, where a search that knows no other would end.
   const auto puck = models::make_dynamics("point_mass", {}, 0.1);
   PlannerSettings settings = resting_settings();

@@ -137,7 +137,7 @@ TEST(ProjectedBfgs, the_cost_never_rises_from_one_limit_to_the_next) {
   }
 }
 
-TEST(ProjectedBfgs, one_small_step_is_not_taken_for_the_minimum) {
+TEST(ProjectedBfgs, does_not_mistake_a_small_step_for_the_minimum) {
   // A wall whose slope is ten thousand times that of the floor behind it: curvature learnt at the
   // wall makes the first steps on the floor tiny.
   OcpProblem problem = quadratic(MatrixXd::Identity(2, 2), VectorXd::Zero(2));
@@ -238,7 +238,7 @@ TEST(ProjectedBfgs, survives_curvature_of_another_problem) {
   EXPECT_LE((result.z - VectorXd::Ones(3)).cwiseAbs().maxCoeff(), 1e-5);
 }
 
-TEST(ProjectedBfgs, curvature_far_too_large_is_not_taken_for_the_minimum) {
+TEST(ProjectedBfgs, does_not_mistake_excessive_curvature_for_the_minimum) {
   Generator generator(9);
   const MatrixXd hessian = random_spd(generator, 6) + MatrixXd::Identity(6, 6);
   const VectorXd centre = VectorXd::Constant(6, 0.7);
@@ -250,7 +250,7 @@ TEST(ProjectedBfgs, curvature_far_too_large_is_not_taken_for_the_minimum) {
   EXPECT_LE((result.z - centre).cwiseAbs().maxCoeff(), 1e-3);
 }
 
-TEST(ProjectedBfgs, takes_no_constraints) {
+TEST(ProjectedBfgs, refuses_constraints) {
   OcpProblem problem = rosenbrock(2);
   problem.constraints = ConstraintSet{};
   EXPECT_THROW(projected_bfgs()->minimise(problem, VectorXd::Zero(2), {}), std::invalid_argument);

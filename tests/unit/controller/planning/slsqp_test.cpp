@@ -87,7 +87,7 @@ TEST_F(Slsqp, projects_onto_a_polygon_of_thousands_of_sides) {
   EXPECT_LE(asked_.most_at_once, 10U);
 }
 
-TEST_F(Slsqp, gradients_that_are_all_but_dependent_are_survived) {
+TEST_F(Slsqp, handles_nearly_dependent_gradients) {
   // Neighbouring tangents differ by a thousandth: NLopt's subproblem then sometimes gives NaN.
   OcpProblem problem = distance_to(VectorXd::Zero(2));
   problem.constraints = circle(5000, asked_);
@@ -258,7 +258,7 @@ TEST_F(Slsqp, a_kept_point_is_preferred_to_a_cheaper_one_that_violates) {
   EXPECT_NEAR(result.violation, 1.0, 1e-12);
 }
 
-TEST_F(Slsqp, equal_constraints_by_the_dozen_do_no_harm) {
+TEST_F(Slsqp, handles_dozens_of_equal_constraints) {
   const MatrixXd normals = VectorXd{{1.0, 1.0}}.normalized().replicate(1, 60);
   OcpProblem problem = distance_to(VectorXd{{2.0, 2.0}});
   problem.constraints = half_planes(normals, VectorXd::Ones(60), asked_);

@@ -317,7 +317,7 @@ TEST(CompressedPropagator, points_that_are_not_finite_cost_infinitely_much_and_d
   EXPECT_TRUE(out.row(1).hasNaN());
 }
 
-TEST(MakePropagator, refuses_unknown_names_and_senseless_settings) {
+TEST(MakePropagator, refuses_unknown_names_and_invalid_settings) {
   Generator generator(47);
   PropagatorSettings settings = random_settings(generator, 20, 15);
   try {

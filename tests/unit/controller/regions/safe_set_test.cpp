@@ -143,7 +143,7 @@ TEST(SafeSet, unrestricted_coordinates_do_not_count) {
   EXPECT_NEAR(clearance(Eigen::Vector3d(2.9, 0.5, 50.0), corridor), -0.1, kRounding);
 }
 
-TEST(SafeSet, senseless_boxes_are_refused) {
+TEST(SafeSet, invalid_boxes_are_refused) {
   SafeSet room = room_with_a_pillar();
   EXPECT_NO_THROW(check_safe_set(room));
   std::get<Box>(room.obstacles[0].form).upper[0] = 2.0;  // no interior

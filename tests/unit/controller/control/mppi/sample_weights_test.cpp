@@ -100,7 +100,7 @@ TEST(ConditionalValueAtRisk, is_the_minimum_that_defines_it) {
   EXPECT_DOUBLE_EQ(conditional_value_at_risk(four, 0.0), 2.5);
 }
 
-TEST(InputSmoothing, keeps_parabolas_and_averages_what_wavers) {
+TEST(InputSmoothing, keeps_parabolas_and_averages_fluctuations) {
   constexpr int kHalf = 3;
   constexpr int kHorizon = 15;
   InputSmoothing smoothing(kHalf, Eigen::VectorXd::Zero(1));
@@ -117,7 +117,7 @@ TEST(InputSmoothing, keeps_parabolas_and_averages_what_wavers) {
   EXPECT_LT(inputs.middleCols(kHalf, kHorizon - 2 * kHalf).cwiseAbs().maxCoeff(), 0.5);
 }
 
-TEST(InputSmoothing, takes_in_what_was_applied_before) {
+TEST(InputSmoothing, includes_the_inputs_applied_before) {
   InputSmoothing smoothing(2, Eigen::VectorXd::Zero(1));
   const auto first_of = [&] {
     Eigen::MatrixXd inputs = Eigen::MatrixXd::Ones(1, 6);
