@@ -296,9 +296,8 @@ void AssignmentRounds::reduce_risk(PlanInProgress& plan) {
     stopwatch.add_to(plan.timing.optimise);
     if (!std::isfinite(result.value)) break;
     set_candidate(result.z, plan);
-    const bool predicted = predict_candidate(plan);
+    const bool accepted = evaluator_.predict_if_better(*plan.candidate, *plan.current);
     stopwatch.add_to(plan.timing.propagate);
-    const bool accepted = predicted && better(*plan.candidate, *plan.current);
     if (accepted) plan.accept_candidate();
     if (!accepted || plan.current->risk.severity <= 0.0) break;
   }

@@ -13,8 +13,8 @@ constexpr int kFewPoints = 12;
 // With at least this many times as many points kept, the coarse cost pays.
 constexpr int kManyTimes = 4;
 
+/// For the propagator.
 PlannerSettings with_few_points(PlannerSettings settings) {
-  settings.state_points = std::min(settings.state_points, kFewPoints);
   settings.noise_points = std::min(settings.noise_points, kFewPoints);
   settings.compressed_points = std::min(settings.compressed_points, kFewPoints);
   return settings;

@@ -1,7 +1,7 @@
 // The expected cost with few points, corrected to the one with all of them.
 //
-// A solver may need a hundred evaluations to the minimum, and with all points each costs a pass
-// through maps of points x parts of the noise. The cost with few points has nearly the same
+// A solver may need a hundred evaluations to reach the minimum, and with all points each costs a
+// pass through maps of points x parts of the noise. The cost with few points has nearly the same
 // curvature; corrected by a linear function so that its value and gradient at the current plan are
 // those with all points, it leads nearly to the same minimum, and from the next plan, nearer still
 // (first-order consistent models: Alexandrov, Dennis, Lewis and Torczon 1998).

@@ -52,6 +52,10 @@ class PlanEvaluator {
   /// must be evaluated. Returns whether it was predicted; if not, only its risk is known, its
   /// surrogate is held, and the held assignments stay as they are.
   [[nodiscard]] bool predict_if_promising(Plan& plan, const Plan& other);
+  /// The same; returns whether the plan is `better` than `other`.
+  [[nodiscard]] bool predict_if_better(Plan& plan, const Plan& other) {
+    return predict_if_promising(plan, other) && better(plan, other);
+  }
 
   /// Holds the assignments of `prediction`, which must stay alive and unchanged.
   void freeze_assignments(const Prediction& prediction, const Policy& policy);

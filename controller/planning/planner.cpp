@@ -160,10 +160,7 @@ void Planner::choose_effort(PlanInProgress& plan) {
   if (effort_.follow(*plan.current)) {
     const Plan& current = *plan.current;
     evaluator_.set_policy(current.policy.inputs, current.gain_change, *plan.candidate);
-    if (evaluator_.predict_if_promising(*plan.candidate, *plan.current) &&
-        better(*plan.candidate, *plan.current)) {
-      plan.accept_candidate();
-    }
+    if (evaluator_.predict_if_better(*plan.candidate, *plan.current)) plan.accept_candidate();
   }
   stopwatch.add_to(plan.timing.propagate);
 }
@@ -173,14 +170,12 @@ void Planner::choose_effort(PlanInProgress& plan) {
 void Planner::try_tail(PlanInProgress& plan, bool in_any_case) {
   PlanStopwatch stopwatch;
   evaluator_.set_policy(kept_inputs_, plan.current->gain_change, *plan.candidate);
-  bool accepted = in_any_case;
   if (in_any_case) {
     evaluator_.predict_and_evaluate(*plan.candidate);
-  } else {
-    accepted = evaluator_.predict_if_promising(*plan.candidate, *plan.current) &&
-               better(*plan.candidate, *plan.current);
+    plan.accept_candidate();
+  } else if (evaluator_.predict_if_better(*plan.candidate, *plan.current)) {
+    plan.accept_candidate();
   }
-  if (accepted) plan.accept_candidate();
   stopwatch.add_to(plan.timing.propagate);
 }
 

@@ -39,7 +39,7 @@ LimitedProblem limited_problem(Generator& generator) {
   settings.horizon = 1 + static_cast<int>(uniform(generator, 0.0, 3.999));
   settings.closed_loop = uniform(generator, 0.0, 1.0) < 0.5;
   settings.feedback_effort = 10.0;
-  // With the many, solvers see the coarse cost.
+  // From 48 points on, solvers see the coarse cost.
   settings.state_points = settings.horizon % 2 == 0 ? 60 : 30;
   settings.noise_points = 20;
   settings.compressed_points = settings.state_points;

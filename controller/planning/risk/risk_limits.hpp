@@ -43,7 +43,7 @@ struct RiskOtherwiseEntry {
 struct PlanRisk {
   std::vector<double> stages;  ///< of stages 1 … horizon; empty where there are no limits
   double plan = 1.0;           ///< of any stage: their sum or a lower bound in its place, at most 1
-  bool counted = false;        ///< whether first entries were counted, be they fewer or not
+  bool counted = false;        ///< whether the bound of first entries was tried
   bool kept = true;            ///< whether the certificates keep all limits
   /// log(certificate / limit) of the limit exceeded most, counting only what the plan can change;
   /// −infinity without limits. Deep inside the unsafe set, where certificates are 1, it measures

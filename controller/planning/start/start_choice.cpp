@@ -118,7 +118,7 @@ void StartChoice::take_best_minimum(PlanInProgress& plan) {
     Plan& one = plan.evaluated ? *plan.candidate : *plan.current;
     evaluator_.set_policy(*inputs, gain_change_, one);
     if (plan.evaluated) {
-      held = evaluator_.predict_if_promising(one, *plan.current) && better(one, *plan.current);
+      held = evaluator_.predict_if_better(one, *plan.current);
       if (held) plan.accept_candidate();
     } else {
       evaluator_.predict_and_evaluate(one);
