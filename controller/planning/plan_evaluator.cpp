@@ -43,7 +43,7 @@ bool better(const Plan& plan, const Plan& other) {
   if (feasible != other_feasible) return feasible;
   if (!feasible && plan.violation != other.violation) return plan.violation < other.violation;
   const std::weak_ordering risk = compare_risk(plan.risk, other.risk);
-  if (risk != 0) return risk < 0;
+  if (std::is_neq(risk)) return std::is_lt(risk);
   return plan.cost.total() < other.cost.total() || !std::isfinite(other.cost.total());
 }
 
@@ -156,7 +156,7 @@ bool PlanEvaluator::predict_if_promising(Plan& plan, const Plan& other) {
   const auto start = std::chrono::steady_clock::now();
   certify(plan);
   // With constraints, a plan may also be better for its smaller violation.
-  if (!constraint_set_ && compare_risk(plan.risk, other.risk) > 0) return false;
+  if (!constraint_set_ && std::is_gt(compare_risk(plan.risk, other.risk))) return false;
   predict_certified(plan);
   prediction_time_ = std::chrono::steady_clock::now() - start;
   return true;

@@ -54,7 +54,7 @@ void StartChoice::choose(const Gaussian& belief, Plan* previous, PlanInProgress&
   hold_risk(previous, plan);
   plan.warm = guess_.compare(previous != nullptr ? &previous->policy.inputs : nullptr, gain_change_,
                              noise_free_, evaluator_.policies());
-  if (plan.warm) {
+  if (previous != nullptr && plan.warm) {
     evaluator_.set_policy(guess_.shifted(), gain_change_, *plan.current);
     if (evaluator_.can_freeze(*previous)) {
       previous->prediction.stages[0] = evaluator_.belief().measure;
