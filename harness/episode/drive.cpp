@@ -16,6 +16,7 @@
 #include "controller/regions/unsafe_set.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/assembly/chosen_points.hpp"
+#include "harness/elapsed.hpp"
 #include "harness/episode/moving_obstacles.hpp"
 #include "harness/episode/trace_header.hpp"
 #include "harness/episode/true_unsafe_set.hpp"
@@ -32,10 +33,6 @@ namespace qsmpc::harness {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 Scenario with_forecast(Scenario scenario,
                        const std::shared_ptr<controller::ObstacleForecast>& forecast) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "controller/measure/wasserstein.hpp"
+#include "harness/elapsed.hpp"
 #include "harness/statistics/sample_statistics.hpp"
 #include "harness/threads/workers.hpp"
 
@@ -92,15 +93,14 @@ class LawJudge {
 /// Computes and times the laws of one method.
 Laws timed_laws(const std::string& name, const controller::LawProblem& problem,
                 const controller::LawSettings& settings, MethodErrors& method) {
-  using Clock = std::chrono::steady_clock;
   const auto propagator = controller::make_law_propagator(name, settings);
   std::vector<double> times;
   Laws laws;
   double spent = 0.0;
   while (times.size() < kTimedRuns && spent < 1e3 * kTimedSeconds) {
-    const Clock::time_point start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
     laws = propagator->propagate(problem);
-    times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    times.push_back(milliseconds_since(start));
     spent += times.back();
   }
   method.name = name;

@@ -13,6 +13,7 @@
 
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/elapsed.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/turn_prediction.hpp"
@@ -76,12 +77,6 @@ constexpr const char* kAfterSteps = "After 5 steps";
 constexpr double kPublishedCompressed = 100.0;
 // Common to all panels of Fig. 4-2, around the 95 % ellipse.
 constexpr MapRectangle kCloudArea{.x_lower = -0.4, .x_upper = 1.9, .y_lower = -0.9, .y_upper = 1.0};
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// Adds every noise point to every point, stage after stage, without compression (Eq. 4-5).
 controller::DiscreteMeasure without_compression(const PredictionReport& report,
@@ -194,7 +189,7 @@ ExperimentResult propagation_with_noise(Laboratory& laboratory) {
   ExperimentResult result;
   const std::string parts = fmt::format("controller.quantisation.noise={}", kNoiseParts);
   const PredictionReport first = on_a_turn(kNoisyStages, {parts});
-  const Clock::time_point start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   const controller::GaussianQuantisation noise = controller::quantise(
       {.mean = Eigen::VectorXd::Zero(first.scenario.disturbance.covariance.rows()),
        .covariance = first.scenario.disturbance.covariance},
