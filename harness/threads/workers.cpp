@@ -4,9 +4,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include <sched.h>
+
 namespace qsmpc::harness {
 
 int available_threads() {
+  // What taskset, cpusets and batch systems leave to this process.
+  cpu_set_t processors;
+  if (sched_getaffinity(0, sizeof(processors), &processors) == 0) return CPU_COUNT(&processors);
   // hardware_concurrency() is 0 if the system does not tell.
   return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }

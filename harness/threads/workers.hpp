@@ -16,7 +16,8 @@
 
 namespace qsmpc::harness {
 
-/// Number of threads that the processor runs concurrently, at least 1.
+/// Number of threads that run concurrently on the processors left to this process (by taskset or a
+/// batch system, for example), at least 1.
 [[nodiscard]] int available_threads();
 
 /// How many of them to use if `asked` are requested: all of them for 0 or fewer, and never more

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 namespace qsmpc::harness {
 namespace workers_test {
@@ -19,6 +20,20 @@ TEST(AvailableThreads, are_at_least_one_and_bound_what_is_asked_for) {
   EXPECT_EQ(usable_threads(0), available_threads());
   EXPECT_EQ(usable_threads(1), 1);
   EXPECT_EQ(usable_threads(available_threads() + 1), available_threads());
+}
+
+TEST(AvailableThreads, are_those_that_the_process_may_use) {
+  cpu_set_t before;
+  ASSERT_EQ(sched_getaffinity(0, sizeof(before), &before), 0);
+  EXPECT_EQ(available_threads(), CPU_COUNT(&before));
+  int first = 0;
+  while (!CPU_ISSET(first, &before)) ++first;
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(first, &one);
+  ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
+  EXPECT_EQ(available_threads(), 1);
+  ASSERT_EQ(sched_setaffinity(0, sizeof(before), &before), 0);
 }
 
 TEST(RunWorkers, calls_each_worker_once_and_the_first_in_the_calling_thread) {
