@@ -94,7 +94,8 @@ ContestJson controllers_json(const ContestResults& results) {
                              {"grid", controller.grid},
                              {"tried", tried_json(controller, results.tuning.tried[n], chosen)},
                              {"chosen", texts_of(controller.candidates[chosen].settings)},
-                             {"overall", standing_json(results.overall[n])}};
+                             {"overall", standing_json(results.overall[n])},
+                             {"words", words_about(results, n)}};
   }
   return json;
 }

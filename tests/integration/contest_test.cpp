@@ -107,6 +107,7 @@ TEST(Contest, json_has_what_was_tried_and_what_everybody_believed) {
   EXPECT_TRUE(lqr["tried"].empty());
   EXPECT_EQ(lqr["overall"]["believed"]["drives"], 0);
   EXPECT_EQ(lqr["overall"]["versus"]["unsafe"]["result"], "tie");
+  EXPECT_THAT(lqr["words"].get<std::string>(), HasSubstr("No significant difference in safety"));
 }
 
 /// Starts the contest and kills it after `delay`, unless it ends earlier.
