@@ -85,7 +85,7 @@ std::vector<StageCertificate> certify(const PredictedMotion& motion, const Unsaf
   std::vector<StageFigure> prepared;
   prepared.reserve(table.size());
   for (const CertificateEntry& entry : table) {
-    const bool asked = entry.in_control || effort == CertificateEffort::kEvery;
+    const bool asked = entry.in_control || effort != CertificateEffort::kLeast;
     prepared.push_back(asked ? entry.prepare(problem) : StageFigure());
   }
   std::vector<StageCertificate> certificates(motion.policy.horizon(), blank_certificate());

@@ -30,7 +30,7 @@ const SurrogateBounds& CertificateProblem::surrogate_bounds() const {
 const ConditionedBounds& CertificateProblem::conditioned_bounds() const {
   if (!conditioned_bounds_) {
     conditioned_bounds_ =
-        controller::conditioned_bounds(motion_, unsafe_, surrogate_bounds(), run_);
+        controller::conditioned_bounds(motion_, unsafe_, surrogate_bounds(), effort_, run_);
   }
   return *conditioned_bounds_;
 }
@@ -41,7 +41,7 @@ const std::vector<double>& CertificateProblem::first_entries() const {
     const auto sum = [](const std::vector<double>& entries) {
       return std::accumulate(entries.begin(), entries.end(), 0.0);
     };
-    if (effort_ == CertificateEffort::kEvery) {
+    if (effort_ != CertificateEffort::kLeast) {
       const std::vector<double>& conditioned = conditioned_bounds().entries;
       if (!conditioned.empty() && sum(conditioned) < sum(*first_entries_)) {
         first_entries_ = conditioned;

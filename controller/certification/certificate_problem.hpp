@@ -33,8 +33,8 @@ class CertificateProblem {
   /// C5 of the same stages. Computed in the first call; not thread-safe.
   [[nodiscard]] const ConditionedBounds& conditioned_bounds() const;
   /// What stages 1 … horizon add to the probability of being unsafe at any of them: from C3 and C4
-  /// as they are or, with CertificateEffort::kEvery, conditioned, whichever has the lesser sum.
-  /// Computed in the first call; not thread-safe.
+  /// as they are or, with more than CertificateEffort::kLeast, conditioned, whichever has the
+  /// lesser sum. Computed in the first call; not thread-safe.
   [[nodiscard]] const std::vector<double>& first_entries() const;
 
  private:

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "controller/certification/certificate.hpp"
 #include "controller/certification/surrogate_bounds.hpp"
 #include "controller/parallel.hpp"
 #include "controller/prediction/prediction.hpp"
@@ -17,12 +18,12 @@ struct ConditionedBounds {
   std::vector<double> entries;  ///< as from first_entry_bounds; empty if nothing was conditioned
 };
 
-/// C5 and the first-entry bounds. A stage's bound is 1 where `plain`, the motion's C3 and C4, is
-/// hardly larger than it would be without errors, and at all stages if the motion has a model
-/// error.
+/// C5 and the first-entry bounds, as tight as `effort` allows. All stages' bounds are 1 where none
+/// of `plain`, the motion's C3 and C4, is much larger than it would be without errors, and if the
+/// motion has a model error.
 [[nodiscard]] ConditionedBounds conditioned_bounds(const PredictedMotion& motion,
                                                    const UnsafeSet& unsafe,
                                                    const SurrogateBounds& plain,
-                                                   const Executor& run);
+                                                   CertificateEffort effort, const Executor& run);
 
 }  // namespace qsmpc::controller

@@ -25,30 +25,6 @@ double grid_ripple(double spacing) {
   return 2.0 * decay / (1.0 - decay);
 }
 
-/// The grid points of one functional. Σ h N(c; 0, 1 − w²) N(a; c, w²) over c = ih is N(a; 0, 1)
-/// times the sum of a normal density of deviation τ = w √(1 − w²) over a grid, which is nearly 1.
-class GridAxis {
- public:
-  explicit GridAxis(double spread)
-      : across_(std::sqrt(1.0 - spread * spread)), step_(kSpacing * spread * across_) {}
-
-  /// Grid points −half … half are within reach.
-  [[nodiscard]] int half() const { return static_cast<int>(kFarthest * across_ / step_); }
-  [[nodiscard]] double place(int i) const { return i * step_; }
-  /// The grid point in deviations of the grid points' law.
-  [[nodiscard]] double deviations(int i) const { return place(i) / across_; }
-  [[nodiscard]] double weight(int i) const {
-    return step_ / across_ * normal_density(deviations(i));
-  }
-  /// Bounds the sum of the weights of all grid points, including those out of reach: it is itself a
-  /// sum of a normal density over a grid.
-  [[nodiscard]] double most_weight() const { return 1.0 + grid_ripple(step_ / across_); }
-
- private:
-  double across_;  ///< deviation of the grid points' law
-  double step_;    ///< h
-};
-
 const Eigen::MatrixXd& covariance_of(const PredictedMotion& motion, std::size_t block) {
   return block == 0 ? motion.belief.covariance : motion.noise_covariance;
 }
@@ -114,48 +90,23 @@ bool concerns_only(const PathTilt& tilt, Eigen::Index block, Eigen::Index axis) 
   return true;
 }
 
-TiltGrid tilt_grid(const Eigen::VectorXd& spreads) {
-  TiltGrid grid;
-  std::vector<GridAxis> axes;
-  double all = 1.0;
-  for (const double spread : spreads) {
-    axes.emplace_back(spread);
-    grid.factor /= 1.0 - grid_ripple(kSpacing);
-    all *= axes.back().most_weight();
+TiltGrid tilt_grid(double spread) {
+  // Σ h N(c; 0, 1 − w²) N(a; c, w²) over c = ih is N(a; 0, 1) times the sum of a normal density of
+  // deviation τ = w √(1 − w²) over a grid, which is nearly 1.
+  const double across = std::sqrt(1.0 - spread * spread);
+  const double step = kSpacing * spread * across;
+  const double factor = 1.0 / (1.0 - grid_ripple(kSpacing));
+  const auto half = static_cast<Eigen::Index>(kFarthest * across / step);
+  TiltGrid grid{
+      .places = step * Eigen::VectorXd::LinSpaced(2 * half + 1, -static_cast<double>(half),
+                                                  static_cast<double>(half)),
+      .weights = Eigen::VectorXd(2 * half + 1)};
+  for (Eigen::Index i = 0; i < grid.places.size(); ++i) {
+    grid.weights[i] = factor * step / across * normal_density(grid.places[i] / across);
   }
-  std::vector<Eigen::VectorXd> centres;
-  std::vector<double> weights;
-  std::vector<int> at(axes.size());
-  for (std::size_t r = 0; r < axes.size(); ++r) at[r] = -axes[r].half();
-  double listed = 0.0;
-  while (true) {
-    Eigen::VectorXd centre(spreads.size());
-    double weight = 1.0;
-    double square = 0.0;  // in deviations of the grid points' law
-    for (std::size_t r = 0; r < axes.size(); ++r) {
-      centre[static_cast<Eigen::Index>(r)] = axes[r].place(at[r]);
-      weight *= axes[r].weight(at[r]);
-      square += axes[r].deviations(at[r]) * axes[r].deviations(at[r]);
-    }
-    if (square <= kFarthest * kFarthest) {
-      centres.push_back(centre);
-      weights.push_back(weight);
-      listed += weight;
-    }
-    std::size_t next = 0;
-    while (next < at.size() && ++at[next] > axes[next].half()) {
-      at[next] = -axes[next].half();
-      ++next;
-    }
-    if (next == at.size()) break;
-  }
-  const auto count = static_cast<Eigen::Index>(centres.size());
-  grid.centres.resize(spreads.size(), count);
-  grid.weights = Eigen::Map<const Eigen::VectorXd>(weights.data(), count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    grid.centres.col(i) = centres[static_cast<std::size_t>(i)];
-  }
-  grid.left_out = std::max(0.0, all - listed);
+  // All weights together are a sum of a normal density over a grid, too.
+  const double all = factor * (1.0 + grid_ripple(step / across));
+  grid.left_out = std::max(0.0, all - grid.weights.sum());
   return grid;
 }
 

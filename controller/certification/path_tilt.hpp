@@ -1,8 +1,8 @@
 // A change of measure for the noise along a plan: the law of the path with one or more of its
-// linear functionals held near given values. As densities, N(0, 1) ≤ Σ ρ_i N(c_i, w²)/(1 − δ), so
-// the probability of an event of the path is at most the sum of its probabilities under the tilted
-// laws, weighted by ρ_i/(1 − δ). Under these laws everything stays Gaussian, with smaller
-// deviations. Derivation: docs/theory/conditioning.md.
+// linear functionals held near given values. As densities, N(0, 1) ≤ Σ ρ_i N(c_i, w²), so the
+// probability of an event of the path is at most the sum of its probabilities under the tilted
+// laws, weighted by ρ_i. Under these laws everything stays Gaussian, with smaller deviations.
+// Derivation: docs/theory/conditioning.md.
 #pragma once
 
 #include <vector>
@@ -49,16 +49,15 @@ struct PathTilt {
 /// zero).
 [[nodiscard]] bool concerns_only(const PathTilt& tilt, Eigen::Index block, Eigen::Index axis);
 
-/// Centres and weights of tilted laws: Σ ρ_i N(c_i, diag(w²)) is at least (1 − δ) N(0, I)
-/// everywhere.
+/// Places c_i and weights ρ_i of narrow laws: Σ ρ_i N(c_i, w²) is at least N(0, 1) everywhere, but
+/// for places too far out to be listed.
 struct TiltGrid {
-  Eigen::MatrixXd centres{};  ///< r x count
-  Eigen::VectorXd weights{};  ///< count
-  double left_out = 0.0;      ///< Σ ρ_i of the centres too far out to be listed
-  double factor = 1.0;        ///< 1 / (1 − δ)
+  Eigen::VectorXd places{};
+  Eigen::VectorXd weights{};
+  double left_out = 0.0;  ///< bounds the sum of the weights of places that are not listed
 };
 
-/// The grid for r functionals with these spreads, 0 < w < 1.
-[[nodiscard]] TiltGrid tilt_grid(const Eigen::VectorXd& spreads);
+/// The grid for 0 < w < 1.
+[[nodiscard]] TiltGrid tilt_grid(double spread);
 
 }  // namespace qsmpc::controller

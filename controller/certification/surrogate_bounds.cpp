@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "controller/certification/disc_surrogate.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc::controller {
 namespace {
@@ -25,11 +26,10 @@ Eigen::Index region_count(const UnsafeSet& unsafe) {
 /// C3 and C4 of one stage, and each region's contribution to C4, which takes the better of the two
 /// for every part of the unsafe set.
 RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const UnsafeSet& unsafe,
-                                      CertificateEffort effort, Eigen::Index stage,
+                                      double worthwhile, Eigen::Index stage,
                                       const SurrogateStage& surrogate, const PathTilt& tilt,
                                       Eigen::VectorXd& shares) {
   if (surrogate.leaving >= 1.0) return {.markov = 1.0, .smooth = 1.0};
-  const bool every = effort == CertificateEffort::kEvery;
   RegionProbability sum{.markov = surrogate.leaving, .smooth = surrogate.leaving};
   Eigen::Index part = 0;
   for (const DiscView& disc : unsafe.discs()) {
@@ -42,7 +42,7 @@ RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const Unsaf
                              .error = centre.error,
                              .higher = centre.higher,
                              .smoothing = smoothing,
-                             .worthwhile = every ? kNegligibleBound : kWorthwhile};
+                             .worthwhile = worthwhile};
     for (const RegionPointer& region : disc.regions) {
       const double before = sum.smooth;
       region->add_probability(stage, state, sum);
@@ -55,7 +55,7 @@ RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const Unsaf
 }  // namespace
 
 double surrogate_law_bound(const UnsafeSet& unsafe, Eigen::Index stage,
-                           const SurrogateStage& surrogate) {
+                           const SurrogateStage& surrogate, double worthwhile) {
   const Eigen::Index dim = surrogate.law.mean.size();
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(dim);
   HigherNorms higher;
@@ -71,42 +71,53 @@ double surrogate_law_bound(const UnsafeSet& unsafe, Eigen::Index stage,
                              .error = none,
                              .higher = higher,
                              .smoothing = smoothing,
-                             .worthwhile = kNegligibleBound};
+                             .worthwhile = worthwhile};
     for (const RegionPointer& region : disc.regions) region->add_probability(stage, state, sum);
   }
   return std::min(1.0, sum.smooth);
 }
 
-SurrogateBounds surrogate_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe,
-                                 CertificateEffort effort, const Executor& run,
-                                 const PathTilt& tilt, std::vector<RegionProbability> known) {
-  SurrogateBounds result{.surrogates = {}, .bounds = std::move(known), .shares = {}};
-  std::vector<RegionProbability>& least = result.bounds;
+SurrogateBounds tilted_surrogate_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe,
+                                        const Eigen::VectorXd& worthwhile, const PathTilt& tilt,
+                                        double core, const Executor& run,
+                                        std::vector<RegionProbability> known) {
   const Eigen::Index horizon = motion.policy.horizon();
+  SurrogateBounds result{.surrogates = affine_surrogates(motion, core, tilt),
+                         .bounds = std::move(known),
+                         .shares = Eigen::MatrixXd::Ones(region_count(unsafe), horizon)};
+  std::vector<RegionProbability>& least = result.bounds;
   if (least.empty()) least.assign(horizon, {.markov = 1.0, .smooth = 1.0});
-  for (const double core : {kWideCore, kNarrowCore}) {
-    std::vector<SurrogateStage> surrogates = affine_surrogates(motion, core, tilt);
-    Eigen::MatrixXd shares = Eigen::MatrixXd::Ones(region_count(unsafe), horizon);
-    const auto stage = [&](int k) {
-      // Neither bound can be less than the probability of leaving, nor C3 less than C4.
-      if (least[k].markov <= surrogates[k + 1].leaving) return;
-      Eigen::VectorXd added = shares.col(k);
-      const RegionProbability bounds = bounds_of_surrogate(
-          motion, unsafe, effort, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1], tilt, added);
-      shares.col(k) = added;
-      least[k] = {.markov = std::min(least[k].markov, bounds.markov),
-                  .smooth = std::min(least[k].smooth, bounds.smooth)};
-    };
-    run(static_cast<int>(least.size()), stage);
-    double largest = 0.0;
-    for (const RegionProbability& bounds : least) largest = std::max(largest, bounds.smooth);
-    const bool in_use = surrogates.back().leaving > 0.0;
-    if (result.surrogates.empty()) {
-      result.surrogates = std::move(surrogates);
-      result.shares = std::move(shares);
-    }
-    // Without a core in use the narrow one changes nothing.
-    if (largest < kTryNarrow || !in_use) break;
+  const auto stage = [&](int k) {
+    const SurrogateStage& surrogate = result.surrogates[k + 1];
+    // Neither bound can be less than the probability of leaving, nor C3 less than C4.
+    if (worthwhile[k] == kInfinity || least[k].markov <= surrogate.leaving) return;
+    Eigen::VectorXd added = result.shares.col(k);
+    const RegionProbability bounds = bounds_of_surrogate(
+        motion, unsafe, worthwhile[k], static_cast<Eigen::Index>(k) + 1, surrogate, tilt, added);
+    result.shares.col(k) = added;
+    least[k] = {.markov = std::min(least[k].markov, bounds.markov),
+                .smooth = std::min(least[k].smooth, bounds.smooth)};
+  };
+  run(static_cast<int>(horizon), stage);
+  return result;
+}
+
+SurrogateBounds surrogate_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe,
+                                 CertificateEffort effort, const Executor& run) {
+  const Eigen::VectorXd worthwhile = Eigen::VectorXd::Constant(
+      motion.policy.horizon(),
+      effort == CertificateEffort::kLeast ? kWorthwhile : kNegligibleBound);
+  SurrogateBounds result = tilted_surrogate_bounds(motion, unsafe, worthwhile, {}, kWideCore, run);
+  double largest = 0.0;
+  for (const RegionProbability& bounds : result.bounds) {
+    largest = std::max(largest, bounds.smooth);
+  }
+  // Without a core in use the narrow one changes nothing.
+  const bool in_use = result.surrogates.back().leaving > 0.0;
+  if (largest >= kTryNarrow && in_use) {
+    result.bounds = tilted_surrogate_bounds(motion, unsafe, worthwhile, {}, kNarrowCore, run,
+                                            std::move(result.bounds))
+                        .bounds;
   }
   return result;
 }

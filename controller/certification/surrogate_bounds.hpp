@@ -23,17 +23,25 @@ struct SurrogateBounds {
 
 /// Needs neither particles nor their distances: the motion's prediction may be empty. Where the
 /// bounds are large, the surrogate with the narrow core is also tried: its core is left more often,
-/// but its residuals are smaller. tilt: all of this under the tilted law of the noise; only for
-/// motions without a model error. known: bounds known already (else 1 each); a stage whose bounds
-/// cannot fall below these is not computed.
+/// but its residuals are smaller.
 [[nodiscard]] SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
                                                const UnsafeSet& unsafe, CertificateEffort effort,
-                                               const Executor& run, const PathTilt& tilt = {},
-                                               std::vector<RegionProbability> known = {});
+                                               const Executor& run);
+
+/// The same with one core, and under the tilted law of the noise; a tilt only for motions without a
+/// model error. worthwhile: per stage, what no search is made for in a part of the unsafe set;
+/// where infinite, the stage is not computed: its bounds and shares are 1. known: bounds known
+/// already (else 1 each); a stage whose bounds cannot fall below these is not computed either.
+[[nodiscard]] SurrogateBounds tilted_surrogate_bounds(const PredictedMotion& motion,
+                                                      const UnsafeSet& unsafe,
+                                                      const Eigen::VectorXd& worthwhile,
+                                                      const PathTilt& tilt, double core,
+                                                      const Executor& run,
+                                                      std::vector<RegionProbability> known = {});
 
 /// A bound of P(z ∈ U) for the surrogate z itself at `stage`: the value of the bounds above if z
 /// equalled the state, hence NOT a bound for the state.
 [[nodiscard]] double surrogate_law_bound(const UnsafeSet& unsafe, Eigen::Index stage,
-                                         const SurrogateStage& surrogate);
+                                         const SurrogateStage& surrogate, double worthwhile);
 
 }  // namespace qsmpc::controller

@@ -147,7 +147,7 @@ class Comparing {
   [[nodiscard]] std::vector<controller::StageCertificate> certificates_of(
       const controller::PredictedMotion& motion) const {
     return controller::certify(motion, scenario_.safe_set, controller::error_budget(motion),
-                               controller::CertificateEffort::kEvery, run_);
+                               controller::CertificateEffort::kTightest, run_);
   }
 
   void compare(Candidate& candidate, SharedWork& work) {

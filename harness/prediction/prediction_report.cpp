@@ -10,6 +10,8 @@
 #include "harness/assembly/chosen_points.hpp"
 #include "harness/assembly/first_decision.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/threads/executor.hpp"
+#include "harness/threads/workers.hpp"
 #include "harness/version.hpp"
 
 namespace qsmpc::harness {
@@ -57,8 +59,9 @@ void judge(const controller::PredictedMotion& motion, const PredictionOptions& o
   report.prediction = controller::without_shares(motion.prediction);
   report.budgets = controller::error_budget(motion);
   // All bounds are reported, so each is made as tight as possible.
-  report.certificates = controller::certify(motion, scenario.safe_set, report.budgets,
-                                            controller::CertificateEffort::kEvery);
+  report.certificates = controller::certify(
+      motion, scenario.safe_set, report.budgets, controller::CertificateEffort::kTightest,
+      executor_of(usable_threads(options.monte_carlo.threads)));
   report.horizon_bound = controller::horizon_bound(report.certificates);
   if (options.monte_carlo.samples > 0) simulate_and_compare(motion, options, report);
 }

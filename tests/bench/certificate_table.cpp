@@ -180,7 +180,7 @@ void add_problem(const Problem& problem, const ProblemClass& row, Generator& gen
   ++count;
   const std::vector<controller::StageCertificate> certificates =
       controller::certify(motion, problem.settings.safe_set, controller::error_budget(motion),
-                          controller::CertificateEffort::kEvery);
+                          controller::CertificateEffort::kTightest);
   const UnsafeCounts counts = simulate(motion, problem.settings.safe_set, options.paths, generator);
   const double ever = static_cast<double>(counts.any) / options.paths;
   if (ever >= options.least && ever <= 0.5) {

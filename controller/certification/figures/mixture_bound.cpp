@@ -13,7 +13,7 @@ StageFigure mixture_bound(const CertificateProblem& problem) {
     const GaussianMixture stepped{.centres = motion.prediction.stepped[k],
                                   .weights = motion.prediction.stages[k].weights,
                                   .covariance = motion.noise_covariance};
-    const bool every = problem.effort() == CertificateEffort::kEvery;
+    const bool every = problem.effort() != CertificateEffort::kLeast;
     const double useful = every ? 1.0 : least - budget.leaving;
     return std::min(
         1.0, budget.leaving + smoothed_probability(stepped, problem.unsafe(), budget.before_noise,

@@ -56,7 +56,9 @@ TEST(ConditionedBounds, are_near_the_truth_where_c4_is_not) {
     const SafeSet safe_set = unsafe_at_the_end(hard.one, hard.axis, 0.01);
     const UnsafeSet unsafe(safe_set);
     const SurrogateBounds plain = plain_bounds(motion, unsafe);
-    const double bound = conditioned_bounds(motion, unsafe, plain, run_in_turn).stages.back();
+    const double bound =
+        conditioned_bounds(motion, unsafe, plain, CertificateEffort::kEvery, run_in_turn)
+            .stages.back();
     const UnsafeCounts counts = simulate(motion, safe_set, kPaths, generator);
     const double truth = static_cast<double>(counts.stages.back()) / kPaths;
     EXPECT_GE(bound, truth - 5.0 * std::sqrt(truth / kPaths)) << hard.one.name;
@@ -71,10 +73,12 @@ TEST(ConditionedBounds, do_not_depend_on_the_order_of_the_work) {
   const SafeSet safe_set = unsafe_at_the_end(one, 1, 0.01);
   const UnsafeSet unsafe(safe_set);
   const SurrogateBounds plain = plain_bounds(motion, unsafe);
-  const ConditionedBounds bounds = conditioned_bounds(motion, unsafe, plain, run_in_turn);
+  const ConditionedBounds bounds =
+      conditioned_bounds(motion, unsafe, plain, CertificateEffort::kEvery, run_in_turn);
   EXPECT_LT(*std::min_element(bounds.stages.begin(), bounds.stages.end()), 1.0);
   for (const Executor& run : {Executor(run_backwards), Executor(run_on_threads)}) {
-    const ConditionedBounds again = conditioned_bounds(motion, unsafe, plain, run);
+    const ConditionedBounds again =
+        conditioned_bounds(motion, unsafe, plain, CertificateEffort::kEvery, run);
     EXPECT_EQ(again.stages, bounds.stages);
     EXPECT_EQ(again.entries, bounds.entries);
   }
@@ -86,8 +90,8 @@ TEST(ConditionedBounds, are_not_worked_out_where_there_is_nothing_to_gain) {
   const SafeSet safe_set = unsafe_at_the_end(one, 0, 0.01);
   const UnsafeSet unsafe(safe_set);
   const PredictedMotion motion = one.motion();
-  const ConditionedBounds none =
-      conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe), run_in_turn);
+  const ConditionedBounds none = conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe),
+                                                    CertificateEffort::kEvery, run_in_turn);
   EXPECT_EQ(none.stages, std::vector<double>(8, 1.0));
   EXPECT_TRUE(none.entries.empty());
 }
@@ -99,8 +103,8 @@ TEST(ConditionedBounds, say_nothing_of_a_plant_with_a_model_error) {
   const ModelError error = model_error_of_size(Eigen::Vector3d::Constant(1e-3));
   PredictedMotion motion = one.motion();
   motion.model_error = &error;
-  const ConditionedBounds none =
-      conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe), run_in_turn);
+  const ConditionedBounds none = conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe),
+                                                    CertificateEffort::kEvery, run_in_turn);
   EXPECT_EQ(none.stages, std::vector<double>(8, 1.0));
   EXPECT_TRUE(none.entries.empty());
 }

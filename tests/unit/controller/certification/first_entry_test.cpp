@@ -108,7 +108,8 @@ TEST(FirstEntry, bounds_every_first_stage_of_simulated_paths) {
     const UnsafeSet unsafe(place.safe_set);
     const SurrogateBounds bounds = bounds_of(motion, unsafe);
     const std::vector<double> entries = first_entry_bounds(unsafe, bounds);
-    const ConditionedBounds conditioned = conditioned_bounds(motion, unsafe, bounds, run_in_turn);
+    const ConditionedBounds conditioned =
+        conditioned_bounds(motion, unsafe, bounds, CertificateEffort::kEvery, run_in_turn);
     const std::vector<double> rates = rates_so_far(motion, place.safe_set, generator);
     double so_far = 0.0;
     double conditioned_so_far = 0.0;
