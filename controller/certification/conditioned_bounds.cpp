@@ -24,7 +24,7 @@ constexpr double kMostParts = 2e5;
 constexpr double kLeastFall = 0.01;
 constexpr std::size_t kLawsOfAttempt = 250;
 // A bound within this factor, plus this margin, of its value without any error is not improved …
-constexpr double kTightEnough = 1.25;
+constexpr double kTightEnough = 1.1;
 constexpr double kSmallEnough = 1e-6;
 // … nor is one whose value without any error exceeds this.
 constexpr double kHopeless = 0.5;

@@ -68,7 +68,11 @@ class MovingShape final : public UnsafeRegion {
         centre_(shape_centre(shape)),
         outline_(shape_outline(shape)),
         forecast_(std::move(forecast)),
-        index_(index) {}
+        index_(index) {
+    for (const BoundedPart& one : parts_.all()) {
+      radius_ = std::max(radius_, (one.circle.centre - centre_).norm() + one.circle.radius);
+    }
+  }
 
   [[nodiscard]] double signed_distance(
       Eigen::Index stage, const Eigen::Ref<const Eigen::VectorXd>& point) const override {
@@ -117,10 +121,18 @@ class MovingShape final : public UnsafeRegion {
   void add_tail(Eigen::Index stage, const Gaussian& law, TailSum& sum) const override {
     const std::array<Eigen::Index, 2> plane = {axes_.x, axes_.y};
     const double largest = law.covariance.diagonal().maxCoeff();
+    const Eigen::Vector2d at = plane_point(law.mean, axes_);
+    const Eigen::Matrix2d within = plane_covariance(law.covariance, axes_);
     for (const ObstaclePlace& place : forecast_->at(index_, stage)) {
+      const Eigen::Matrix2d spread = within + place.covariance;
+      // The trace, which is easier to compute, settles most places.
+      const double floor = least_variance(largest);
+      if (is_far(place, at, spread.trace() + 2.0 * floor) ||
+          is_far(place, at, largest_variance(spread) + floor)) {
+        continue;
+      }
       const PlaneMotion where = motion(place);
-      const Eigen::Vector2d mean = where.back(plane_point(law.mean, axes_));
-      const Eigen::Matrix2d spread = plane_covariance(law.covariance, axes_) + place.covariance;
+      const Eigen::Vector2d mean = where.back(at);
       const Eigen::Matrix2d covariance =
           uncertain(where.turn.transpose() * spread * where.turn, largest);
       const double reach = kNoMovingTail * largest_deviation(covariance);
@@ -201,6 +213,13 @@ class MovingShape final : public UnsafeRegion {
     double growth_;
   };
 
+  /// Whether every part's tail is left out. variance: an upper bound in any direction.
+  [[nodiscard]] bool is_far(const ObstaclePlace& place, const Eigen::Vector2d& mean,
+                            double variance) const {
+    return is_beyond({.centre = centre_ + place.offset, .radius = radius_}, mean,
+                     kNoMovingTail * std::sqrt(std::max(0.0, variance)));
+  }
+
   [[nodiscard]] PlaneMotion motion(const ObstaclePlace& place) const {
     PlaneMotion where{.centre = centre_, .shift = place.offset};
     if (place.turn != 0.0) where.turn = Eigen::Rotation2Dd(place.turn).toRotationMatrix();
@@ -210,6 +229,7 @@ class MovingShape final : public UnsafeRegion {
   PlaneAxes axes_;
   ShapeParts parts_;
   Eigen::Vector2d centre_;
+  double radius_ = 0.0;       ///< about the centre, of all parts, however they are turned
   Eigen::Matrix2Xd outline_;  ///< of the shape itself, as specified
   std::shared_ptr<const ObstacleForecast> forecast_;
   std::size_t index_;

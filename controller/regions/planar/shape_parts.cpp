@@ -194,8 +194,12 @@ Eigen::Matrix2d plane_covariance(const Eigen::Ref<const Eigen::MatrixXd>& covari
   return plane;
 }
 
+double least_variance(double largest) {
+  return std::max(kCertainVariance, kCertainShare * largest);
+}
+
 Eigen::Matrix2d uncertain(Eigen::Matrix2d covariance, double largest) {
-  const double floor = std::max(kCertainVariance, kCertainShare * largest);
+  const double floor = least_variance(largest);
   covariance.diagonal() = covariance.diagonal().cwiseMax(floor);
   const double most = (1.0 - 1e-12) * std::sqrt(covariance(0, 0) * covariance(1, 1));
   covariance(0, 1) = covariance(1, 0) = std::clamp(covariance(0, 1), -most, most);

@@ -115,9 +115,11 @@ class SoftShape final : public SoftRegion {
 [[nodiscard]] Eigen::Matrix2d plane_covariance(const Eigen::Ref<const Eigen::MatrixXd>& covariance,
                                                PlaneAxes axes);
 
-/// The covariance with its variances raised to at least the threshold of certainty; `largest` is
-/// the largest variance of the whole law. A smaller variance has no usable standard deviation to
-/// measure distances in.
+/// The threshold of certainty: a smaller variance has no usable standard deviation to measure
+/// distances in. largest: the largest variance of the whole law.
+[[nodiscard]] double least_variance(double largest);
+
+/// The covariance with its variances raised to at least that threshold.
 [[nodiscard]] Eigen::Matrix2d uncertain(Eigen::Matrix2d covariance, double largest);
 
 /// Beyond this many standard deviations a tail is 0 in double precision.
