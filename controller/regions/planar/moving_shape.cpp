@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "controller/regions/planar/shape_parts.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc::controller {
 namespace {
