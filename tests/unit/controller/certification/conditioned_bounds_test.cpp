@@ -67,6 +67,26 @@ TEST(ConditionedBounds, are_near_the_truth_where_c4_is_not) {
   }
 }
 
+TEST(ConditionedBounds, fall_with_the_effort_and_stay_above_the_truth) {
+  Generator generator(218);
+  // Clamped at every stage: a hundred laws are too few.
+  const Case one =
+      double_integrator({.closed_loop = true, .gain = Eigen::RowVector2d(-6.0, -4.0)}, 0.5, 0.3);
+  const PredictedMotion motion = one.motion();
+  const SafeSet safe_set = unsafe_at_the_end(one, 0, 0.01);
+  const UnsafeSet unsafe(safe_set);
+  const SurrogateBounds plain = plain_bounds(motion, unsafe);
+  const auto last = [&](CertificateEffort effort) {
+    return conditioned_bounds(motion, unsafe, plain, effort, run_in_turn).stages.back();
+  };
+  const double every = last(CertificateEffort::kEvery);
+  const double tightest = last(CertificateEffort::kTightest);
+  const UnsafeCounts counts = simulate(motion, safe_set, kPaths, generator);
+  const double truth = static_cast<double>(counts.stages.back()) / kPaths;
+  EXPECT_LT(tightest, 0.95 * every);
+  EXPECT_GE(tightest, truth - 5.0 * std::sqrt(truth / kPaths));
+}
+
 TEST(ConditionedBounds, do_not_depend_on_the_order_of_the_work) {
   const Case one = dubins({}, 0.0, 1.0);
   const PredictedMotion motion = one.motion();
