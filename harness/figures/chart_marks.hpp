@@ -1,17 +1,19 @@
 // The markers of a chart's points: one per colour, so that series can be told apart in greyscale
-// and by colour-blind readers. In the order of the page's palette: dot, square, triangle, diamond,
-// cross and plus.
+// and by colour-blind readers, and two more for series that share a colour. In the order of the
+// page's palette: dot, square, triangle, diamond, cross and plus; then a triangle that points down
+// and an hourglass.
 #pragma once
 
 #include <string>
 
 namespace qsmpc::harness {
 
-/// The marker of `colour` centred at (x, y), as path data; the data of several points may be
-/// concatenated.
-[[nodiscard]] std::string mark_data(int colour, double x, double y);
+inline constexpr int kMarkerCount = 8;
 
-/// The CSS classes of such a path.
-[[nodiscard]] std::string mark_classes(int colour);
+/// The marker centred at (x, y), as path data; the data of several points may be concatenated.
+[[nodiscard]] std::string mark_data(int marker, double x, double y);
+
+/// The CSS classes of such a path in this colour.
+[[nodiscard]] std::string mark_classes(int colour, int marker);
 
 }  // namespace qsmpc::harness

@@ -27,6 +27,10 @@ constexpr std::size_t kMarksOnLine = 8;    // if it has many points
 constexpr double kNameSize = 14.5;         // font size on a telephone, where it is largest
 constexpr std::size_t kAllMarked = 12;     // a line of up to this many points has a mark at each
 
+int marker_of(const Series& series) {
+  return series.marker < 0 ? palette_index(series) : std::min(series.marker, kMarkerCount - 1);
+}
+
 /// The points to draw: of each stretch of a long line, its minimum and maximum in their order; of a
 /// stretch with a gap, also the gap.
 std::vector<std::size_t> drawn_indices(const Series& series) {
@@ -73,13 +77,13 @@ PathData path_data(const Series& series, const PlotFrame& frame) {
     const double x = frame.across(series.x[indices[n]]);
     const double y = frame.up(series.y[indices[n]]);
     const bool begins = n == 0 || !shown(n - 1);
-    if (series.mark == Mark::kJoined) data.dots += mark_data(palette_index(series), x, y);
+    if (series.mark == Mark::kJoined) data.dots += mark_data(marker_of(series), x, y);
     if (series.mark == Mark::kLimits) {
       data.line += limit_arrow(x, y);
     } else if (series.mark == Mark::kJoined) {
       data.line += fmt::format("{}{:.1f} {:.1f}", begins ? "M" : "L", x, y);
     } else if (series.mark == Mark::kPoints || (begins && !shown(n + 1))) {
-      data.dots += mark_data(palette_index(series), x, y);
+      data.dots += mark_data(marker_of(series), x, y);
     } else if (begins) {
       data.line += fmt::format("M{:.1f} {:.1f}", x, y);
     } else if (series.mark == Mark::kSteps) {
@@ -110,13 +114,14 @@ std::string line_marks(const Series& series, const PlotFrame& frame) {
     const std::size_t place = (n * kPaletteSize + static_cast<std::size_t>(colour)) * shown.size() /
                               (marks * kPaletteSize);
     const std::size_t i = shown[marks == shown.size() ? n : place];
-    data += mark_data(colour, frame.across(series.x[i]), frame.up(series.y[i]));
+    data += mark_data(marker_of(series), frame.across(series.x[i]), frame.up(series.y[i]));
   }
   return data;
 }
 
 std::string marks_svg(const Series& series, const std::string& data) {
-  return fmt::format("<path class=\"{}\" d=\"{}\"/>", mark_classes(palette_index(series)), data);
+  return fmt::format("<path class=\"{}\" d=\"{}\"/>",
+                     mark_classes(palette_index(series), marker_of(series)), data);
 }
 
 std::string line_classes(const Series& series) {
@@ -283,8 +288,8 @@ std::vector<LegendEntry> chart_legend(const Chart& chart) {
     LegendEntry entry = line_entry(line_classes(series), series.name);
     if (series.mark == Mark::kPoints) entry.drawing.clear();
     if (series.mark == Mark::kPoints || series.mark == Mark::kJoined || has_marks(chart, series)) {
-      entry.drawing += marks_svg(
-          series, mark_data(palette_index(series), kSwatchWidth / 2.0, kSwatchHeight / 2.0));
+      entry.drawing +=
+          marks_svg(series, mark_data(marker_of(series), kSwatchWidth / 2.0, kSwatchHeight / 2.0));
     }
     entries.push_back(std::move(entry));
   }

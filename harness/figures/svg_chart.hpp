@@ -21,6 +21,8 @@ enum class Mark { kLine, kSteps, kPoints, kJoined, kLimits };
 struct Series {
   std::string name;
   int colour = 0;  ///< of the page's palette, 0 … kPaletteSize - 1
+  /// Of its points, 0 … kMarkerCount - 1 (chart_marks.hpp); negative: that of the colour.
+  int marker = -1;
   Mark mark = Mark::kLine;
   bool dashed = false;
   std::vector<double> x{};

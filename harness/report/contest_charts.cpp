@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/figures/chart_marks.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
@@ -82,6 +83,7 @@ Chart standings_chart(const ContestResults& results, const std::string& title,
     const std::string name = printable(results.contest.controllers[n].name, kDotLabelLimit);
     chart.series.push_back({.name = name,
                             .colour = static_cast<int>(n) % kPaletteSize,
+                            .marker = static_cast<int>(n) % kMarkerCount,
                             .mark = Mark::kJoined,
                             .x = {unsafe.rate},
                             .y = {cost.mean},

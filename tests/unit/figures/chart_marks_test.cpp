@@ -22,10 +22,11 @@ Series line(int colour, bool dashed = false) {
           .y = {1, 2, 3}};
 }
 
-TEST(ChartMarks, differ_between_all_colours) {
+TEST(ChartMarks, differ_and_are_more_than_there_are_colours) {
+  static_assert(kMarkerCount > kPaletteSize);
   std::set<std::string> marks;
-  for (int colour = 0; colour < kPaletteSize; ++colour) marks.insert(mark_data(colour, 50, 60));
-  EXPECT_EQ(marks.size(), static_cast<std::size_t>(kPaletteSize));
+  for (int marker = 0; marker < kMarkerCount; ++marker) marks.insert(mark_data(marker, 50, 60));
+  EXPECT_EQ(marks.size(), static_cast<std::size_t>(kMarkerCount));
   EXPECT_EQ(mark_data(kOrange, 50, 60), "M47.0 57.0L53.0 57.0L53.0 63.0L47.0 63.0L47.0 57.0");
 }
 
@@ -43,6 +44,17 @@ TEST(ChartMarks, lie_along_the_lines_where_there_are_several) {
   const std::string sign = mark_data(kGreen, kSwatchWidth / 2.0, kSwatchHeight / 2.0);
   EXPECT_TRUE(testing::contains(chart_legend(chart)[1].drawing, sign));
   EXPECT_FALSE(testing::contains(chart_legend(chart)[2].drawing, "c5\" d"));
+}
+
+TEST(ChartMarks, of_a_series_may_be_others_than_those_of_its_colour) {
+  Series other = line(kBlue);
+  other.mark = Mark::kPoints;
+  other.marker = kMarkerCount - 1;
+  const Chart chart{.title = "t", .x_label = "x", .y_label = "y", .series = {other}};
+  const std::string svg = chart_drawing(chart);
+  EXPECT_TRUE(testing::contains(svg, mark_data(kMarkerCount - 1, 78.0, 244.0)));
+  EXPECT_TRUE(testing::contains(svg, "class=\"line c0\"")) << "strokes, not dots";
+  EXPECT_TRUE(testing::contains(chart_legend(chart)[0].drawing, "class=\"line c0\""));
 }
 
 TEST(ChartMarks, are_few_on_a_line_of_many_points) {
