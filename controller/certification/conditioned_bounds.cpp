@@ -15,12 +15,12 @@
 namespace qsmpc::controller {
 namespace {
 
-// The largest number of laws, and of parts of the unsafe set over all laws and stages.
-double most_laws(CertificateEffort effort) {
-  return effort == CertificateEffort::kTightest ? 2000.0 : 100.0;
-}
+// The largest number of laws, for many plans and for one …
+constexpr double kLawsForMany = 100.0;
+constexpr double kLawsForOne = 2000.0;
+// … and of parts of the unsafe set over all laws and stages.
 constexpr double kMostParts = 2e5;
-// It is given up if the loose bounds fall by less than this share while so many laws are added.
+// Refinement stops if the loose bounds fall by less than this share while so many laws are added.
 constexpr double kLeastFall = 0.01;
 constexpr std::size_t kLawsOfAttempt = 250;
 // A bound within this factor, plus this margin, of its value without any error is not improved …
@@ -94,7 +94,7 @@ double largest_excess(const LawBounds& bounds, const Question& question) {
   return largest;
 }
 
-/// The least bounds with cores that are ever narrower, as long as that may help.
+/// The least bounds over ever narrower cores, as long as these may help.
 LawBounds tilted_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe,
                         const PathTilt& tilt, const Question& question) {
   LawBounds least;
@@ -129,7 +129,8 @@ class LawTree {
     find_what_is_loose();
     double parts = 0.0;
     for (const DiscView& disc : unsafe.discs()) parts += static_cast<double>(disc.regions.size());
-    most_ = std::min(most_laws(effort), kMostParts / (parts * static_cast<double>(horizon)));
+    const double laws = effort == CertificateEffort::kTightest ? kLawsForOne : kLawsForMany;
+    most_ = std::min(laws, kMostParts / (parts * static_cast<double>(horizon)));
   }
 
   /// Splits laws until all bounds are tight, or until the work is used up.

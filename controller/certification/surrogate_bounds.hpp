@@ -29,9 +29,10 @@ struct SurrogateBounds {
                                                const Executor& run);
 
 /// The same with one core, and under the tilted law of the noise; a tilt only for motions without a
-/// model error. worthwhile: per stage, what no search is made for in a part of the unsafe set;
-/// where infinite, the stage is not computed: its bounds and shares are 1. known: bounds known
-/// already (else 1 each); a stage whose bounds cannot fall below these is not computed either.
+/// model error. worthwhile: per stage, the contribution of a part of the unsafe set up to which no
+/// long search is made; where infinite, the stage is not computed: its bounds and shares are 1.
+/// known: bounds known already (else 1 each); a stage whose bounds cannot fall below these is not
+/// computed either.
 [[nodiscard]] SurrogateBounds tilted_surrogate_bounds(const PredictedMotion& motion,
                                                       const UnsafeSet& unsafe,
                                                       const Eigen::VectorXd& worthwhile,

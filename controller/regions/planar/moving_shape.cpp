@@ -122,12 +122,12 @@ class MovingShape final : public UnsafeRegion {
   void add_tail(Eigen::Index stage, const Gaussian& law, TailSum& sum) const override {
     const std::array<Eigen::Index, 2> plane = {axes_.x, axes_.y};
     const double largest = law.covariance.diagonal().maxCoeff();
+    const double floor = least_variance(largest);
     const Eigen::Vector2d at = plane_point(law.mean, axes_);
     const Eigen::Matrix2d within = plane_covariance(law.covariance, axes_);
     for (const ObstaclePlace& place : forecast_->at(index_, stage)) {
       const Eigen::Matrix2d spread = within + place.covariance;
       // The trace, which is easier to compute, settles most places.
-      const double floor = least_variance(largest);
       if (is_far(place, at, spread.trace() + 2.0 * floor) ||
           is_far(place, at, largest_variance(spread) + floor)) {
         continue;
