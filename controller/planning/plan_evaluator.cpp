@@ -121,6 +121,7 @@ void PlanEvaluator::take_belief(const Gaussian& belief, std::optional<double> pr
   quantiser_.quantise(belief, belief_);
   gaussian_ = belief;
   progress_ = progress;
+  if (risk_) risk_->begin();
   within_ = belief_.within_covariance;
   place_target();
 }

@@ -39,6 +39,7 @@ RiskConstraint::RiskConstraint(const models::Dynamics& dynamics, const PlannerSe
     : dynamics_(dynamics),
       settings_(settings),
       unsafe_(settings.safe_set),
+      bounds_(unsafe_, settings.run),
       model_(dynamics, unsafe_) {
   set_limits(settings.risk, 0);
 }
@@ -50,6 +51,7 @@ void RiskConstraint::set_limits(const RiskLimits& limits, Eigen::Index period) {
     if (*limit >= 1.0) *limit = kInfinity;
   }
   period_ = period;
+  bounds_.forget();
   Eigen::Index count = 0;
   if (std::isfinite(limits_.first)) ++count;
   if (std::isfinite(limits_.stage)) count += settings_.horizon;
@@ -79,8 +81,7 @@ void RiskConstraint::hold(const Gaussian& belief, const Policy& policy) {
 
 void RiskConstraint::certify(const Gaussian& belief, const Policy& policy, PlanRisk& out) {
   const PredictedMotion motion = motion_of(belief, policy);
-  const SurrogateBounds bounds =
-      surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast, settings_.run);
+  const SurrogateBounds& bounds = bounds_.of(motion);
   model_.hold(motion, bounds.surrogates);
   take_stages(bounds, out.stages);
   out.plan = std::min(1.0, sum_of(out.stages));
@@ -96,22 +97,17 @@ void RiskConstraint::certify(const Gaussian& belief, const Policy& policy, PlanR
   judge(out);
 }
 
-double RiskConstraint::excess(const Gaussian& belief, const Policy& policy) const {
+double RiskConstraint::excess(const Gaussian& belief, const Policy& policy) {
   std::vector<double> stages;
-  take_stages(surrogate_bounds(motion_of(belief, policy), unsafe_, CertificateEffort::kLeast,
-                               settings_.run),
-              stages);
+  take_stages(bounds_.of(motion_of(belief, policy)), stages);
   return excess(stages);
 }
 
-bool RiskConstraint::count_entries(const Gaussian& belief, const Policy& policy,
-                                   PlanRisk& risk) const {
+bool RiskConstraint::count_entries(const Gaussian& belief, const Policy& policy, PlanRisk& risk) {
   if (risk.kept || !std::isfinite(limits_.plan) || !(risk.plan > limits_.plan)) return risk.kept;
   if (risk.counted) return false;
   risk.counted = true;
-  const double entries = sum_of(
-      first_entry_bounds(unsafe_, surrogate_bounds(motion_of(belief, policy), unsafe_,
-                                                   CertificateEffort::kLeast, settings_.run)));
+  const double entries = sum_of(first_entry_bounds(unsafe_, bounds_.of(motion_of(belief, policy))));
   const double certified = excess(risk.stages, entries);
   if (!(certified <= 0.0)) return false;
   risk.plan = entries;

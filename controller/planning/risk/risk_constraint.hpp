@@ -9,6 +9,7 @@
 
 #include "controller/measure/measures.hpp"
 #include "controller/planning/planner_settings.hpp"
+#include "controller/planning/risk/recent_bounds.hpp"
 #include "controller/planning/risk/risk_limits.hpp"
 #include "controller/planning/risk/risk_model.hpp"
 #include "controller/planning/solvers/augmented_lagrangian.hpp"
@@ -26,16 +27,18 @@ class RiskConstraint final : public SummedConstraints {
   /// Sets the limits of the plan made in period `period` of a drive.
   void set_limits(const RiskLimits& limits, Eigen::Index period);
   [[nodiscard]] const RiskLimits& limits() const { return limits_; }
+  /// To be called before each plan: the laws of moving obstacles may have changed.
+  void begin() { bounds_.forget(); }
 
   /// Certifies `policy` from `belief`, and holds its calibrated surrogate.
   void certify(const Gaussian& belief, const Policy& policy, PlanRisk& out);
   /// If `risk`, certified for `policy`, exceeds its limits by the sum over the stages: re-evaluates
   /// it by the tighter first-entry bounds (first_entry.hpp). Returns whether it is within its
   /// limits.
-  bool count_entries(const Gaussian& belief, const Policy& policy, PlanRisk& risk) const;
+  bool count_entries(const Gaussian& belief, const Policy& policy, PlanRisk& risk);
   /// log(certificate / limit) of the limit that `policy` exceeds most; does not change the held
   /// surrogate.
-  [[nodiscard]] double excess(const Gaussian& belief, const Policy& policy) const;
+  [[nodiscard]] double excess(const Gaussian& belief, const Policy& policy);
   /// The same for the certificates of a policy (stages 1 … horizon).
   [[nodiscard]] double excess(const std::vector<double>& stages) const;
   /// Holds the surrogate of `policy` with the factors of the last calibration.
@@ -69,6 +72,7 @@ class RiskConstraint final : public SummedConstraints {
   const models::Dynamics& dynamics_;
   const PlannerSettings& settings_;
   UnsafeSet unsafe_;
+  RecentBounds bounds_;
   RiskModel model_;
   RiskLimits limits_;
   Eigen::Index period_ = 0;
