@@ -26,19 +26,18 @@ struct SurrogateBounds {
 /// but its residuals are smaller.
 [[nodiscard]] SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
                                                const UnsafeSet& unsafe, CertificateEffort effort,
-                                               const Executor& run);
+                                               const Executor& run,
+                                               WantedBounds wanted = WantedBounds::kBoth);
 
-/// The same with one core, and under the tilted law of the noise; a tilt only for motions without a
-/// model error. worthwhile: per stage, the contribution of a part of the unsafe set up to which no
-/// long search is made; where infinite, the stage is not computed: its bounds and shares are 1.
-/// known: bounds known already (else 1 each); a stage whose bounds cannot fall below these is not
-/// computed either.
+/// C4 with one core and under the tilted law of the noise, C3 only as far as it may lower C4; a
+/// tilt only for motions without a model error. worthwhile: per stage, the contribution of a part
+/// of the unsafe set up to which no long search is made; where infinite, the stage is not computed:
+/// its bounds and shares are 1.
 [[nodiscard]] SurrogateBounds tilted_surrogate_bounds(const PredictedMotion& motion,
                                                       const UnsafeSet& unsafe,
                                                       const Eigen::VectorXd& worthwhile,
                                                       const PathTilt& tilt, double core,
-                                                      const Executor& run,
-                                                      std::vector<RegionProbability> known = {});
+                                                      const Executor& run);
 
 /// A bound of P(z ∈ U) for the surrogate z itself at `stage`: the value of the bounds above if z
 /// equalled the state, hence NOT a bound for the state.

@@ -33,8 +33,11 @@ constexpr double kLimitedSettled = 1e-4;
 // Extra rounds if a particle violates a bound under new assignments, though none did under the old
 // ones. Each tightens the bounds by the violation.
 constexpr int kConstraintRounds = 5;
-// Extra rounds if a plan's certificate exceeds a limit.
+// Extra rounds if a plan's certificate exceeds a limit. A better plan that comes nearer to the
+// limit by less than this share of what is missing, in log risk, ends them: no round would reach
+// it.
 constexpr int kRiskRounds = 3;
+constexpr double kHopelessShare = 0.1;
 // Most minimisations in one round until the multipliers have converged, and the tolerance of a
 // limit, in log risk; the limits are tightened to make up for it.
 constexpr int kMultiplierRounds = 6;
@@ -166,6 +169,7 @@ bool AssignmentRounds::optimise(Search& search, int rounds, PlanInProgress& plan
   const auto may_go_on = [&] {
     return plan.evaluations < settings_.max_evaluations && !plan.stopped();
   };
+  double last_severity = kInfinity;
   for (int n = 0; n < rounds && may_go_on(); ++n) {
     const bool promising = run_solver(search, plan);
     stopwatch.add_to(plan.timing.optimise);
@@ -185,9 +189,13 @@ bool AssignmentRounds::optimise(Search& search, int rounds, PlanInProgress& plan
     }
     const bool accepted = predicted && (!plan.evaluated || better(*plan.candidate, *plan.current));
     const bool more = asks_for_more(*plan.candidate, plan, n, rounds);
+    const PlanRisk& risk = plan.candidate->risk;
+    const bool hopeless =
+        accepted && !risk.kept && last_severity - risk.severity < kHopelessShare * risk.severity;
+    last_severity = risk.severity;
     if (accepted) plan.accept_candidate();
     if (plan.late()) plan.status = SolverStatus::kDeadline;
-    if (!accepted && !more) break;
+    if (hopeless || (!accepted && !more)) break;
   }
   if (!plan.evaluated) evaluator_.predict_and_evaluate(*plan.current);
   plan.evaluated = true;

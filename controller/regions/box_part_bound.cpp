@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <Eigen/LU>
 
@@ -240,12 +241,15 @@ class ReachSearch {
  public:
   ReachSearch(const SoftPart& part, double square) : part_(part), square_(square) {}
 
-  [[nodiscard]] double best() {
-    const double least = 1.02 * std::sqrt(square_);
+  /// Empty if no value can be below `useful` (at most 1).
+  [[nodiscard]] std::optional<double> best(double useful) {
+    // Below this t the first term alone exceeds `useful`; the second term grows with t.
+    const double least = 1.02 * std::sqrt(square_ / useful);
     constexpr int kCount = kSoftReaches;
     for (int octave = 0; octave < kPartOctaves; octave += kCount) {
-      // The second term grows with t, so that no larger t can be better.
-      if (try_about(std::ldexp(least, octave), 1.0, 0.0) >= least_value_) break;
+      const Expectations near = try_about(std::ldexp(least, octave), 1.0, 0.0);
+      if (octave == 0 && near.front() >= useful) return std::nullopt;
+      if (near.back() >= least_value_) break;
     }
     const double coarse = best_;
     try_about(coarse, 1.0 / kFineSteps, kCount);
@@ -255,10 +259,12 @@ class ReachSearch {
   }
 
  private:
-  /// Tries centre · 2^{step (k − before)}, k = 0, 1, …; returns the last one's expectation.
-  double try_about(double centre, double step, double before) {
+  using Expectations = std::array<double, kSoftReaches>;
+
+  /// Tries centre · 2^{step (k − before)}, k = 0, 1, …; returns their expectations.
+  Expectations try_about(double centre, double step, double before) {
     std::array<double, kSoftReaches> reaches;
-    std::array<double, kSoftReaches> near;
+    Expectations near;
     const double ratio = std::exp2(step);
     reaches[0] = centre * std::exp2(-step * before);
     for (std::size_t k = 1; k < kSoftReaches; ++k) reaches[k] = reaches[k - 1] * ratio;
@@ -269,7 +275,7 @@ class ReachSearch {
       least_value_ = value;
       best_ = reaches[k];
     }
-    return near.back();
+    return near;
   }
 
   const SoftPart& part_;
@@ -309,7 +315,7 @@ double least_on_logarithmic_scale(const Value& value, double first, double ratio
 
 }  // namespace
 
-double markov_region_bound(const PerturbedGaussian& state, const BoxPart& part) {
+double markov_region_bound(const PerturbedGaussian& state, const BoxPart& part, double useful) {
   double square = 0.0;
   for (const Eigen::Index axis : part.axes) square += state.error[axis] * state.error[axis];
   if (!std::isfinite(square) || !state.law.mean.allFinite() || !state.law.covariance.allFinite()) {
@@ -317,14 +323,19 @@ double markov_region_bound(const PerturbedGaussian& state, const BoxPart& part) 
   }
   const SoftPart soft = soft_part(state.law.mean, state.law.covariance, part.box);
   // The search uses the vector loops; its result is evaluated again with smaller allowances.
-  const double t = square == 0.0 ? kSmallestReach : ReachSearch(soft, square).best();
-  return std::min(1.0, square / (t * t) + soft_part_probability(soft, t));
+  const std::optional<double> t =
+      square == 0.0 ? kSmallestReach : ReachSearch(soft, square).best(useful);
+  if (!t) return 1.0;
+  return std::min(1.0, square / (*t * *t) + soft_part_probability(soft, *t));
 }
 
 double tail_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
-                         const BoxPart& part) {
+                         const BoxPart& part, double useful) {
   if (!usable(law, norms, part)) return 1.0;
   WidenedPart widened(law, norms, part);
+  // Below this τ the tails alone exceed `useful`; the probability grows with τ.
+  const double least = std::pow(static_cast<double>(part.axes.size()) / useful, 1.0 / order);
+  if (useful < 1.0 && widened.estimate(least) >= useful) return 1.0;
   const double ratio = least_on_logarithmic_scale(
       [&](double tau) { return widened.tails(tau, order) + widened.estimate(tau); }, 1.0,
       kLargestTailRatio, kTailSteps);

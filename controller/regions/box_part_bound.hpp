@@ -18,13 +18,15 @@ struct PerturbedGaussian {
 };
 
 /// C3: min over t of E|e|²/t² + E(1 − d(z, part)²/t²)₊, with e in the part's coordinates only.
-[[nodiscard]] double markov_region_bound(const PerturbedGaussian& state, const BoxPart& part);
+/// useful: a bound that cannot be below this (> 0) is not searched for, and 1 is returned.
+[[nodiscard]] double markov_region_bound(const PerturbedGaussian& state, const BoxPart& part,
+                                         double useful = 1.0);
 
 /// C3 by a norm of higher order: min over τ of |axes| τ^−p + P(z ∈ part widened by τ · norms),
 /// since P(|e_a| > τ ‖e_a‖_p) ≤ τ^−p in each of the part's coordinates. norms: bounds of ‖e_a‖_p
-/// (dim).
+/// (dim). useful: as above.
 [[nodiscard]] double tail_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
-                                       const BoxPart& part);
+                                       const BoxPart& part, double useful = 1.0);
 
 /// The same with the single τ that leaves half of `enough` (> 0) to the tails: as good as a search
 /// if the result is at most `enough`. Returns 1 if the part is too near for this τ to be useful.

@@ -32,6 +32,12 @@ struct PenaltyBatch {
   Points& adjoint;      ///< state_dim x n
 };
 
+/// Which of the bounds C3 and C4 are wanted.
+enum class WantedBounds {
+  kBoth,
+  kLeast,  ///< C4 alone; C3 only as far as it may lower C4, and a looser one otherwise
+};
+
 /// The state in bounds C3 and C4 (docs/theory/surrogate.md): z + e with z ~ law.
 struct SurrogateLaw {
   const Gaussian& law;
@@ -41,6 +47,7 @@ struct SurrogateLaw {
   const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>& axes)>& smoothing;
   /// A bound at or below this value need not be refined.
   double worthwhile = 0.0;
+  WantedBounds wanted = WantedBounds::kBoth;
 };
 
 /// Upper bounds of probabilities; each region adds its own.

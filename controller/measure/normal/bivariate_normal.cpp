@@ -26,6 +26,25 @@ constexpr double kFar = 9.0;
 // Owen's T in double precision: its few units in the last place are far below kRectangleError.
 using PlainDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
+/// T(h, p/h), p ≠ 0 or h ≠ 0. Where |p| > |h|, by the reflection T(h, a) + T(ah, 1/a) =
+/// ½(Q(h) + Q(ah)) − Q(h) Q(ah) for h ≥ 0, a > 0, Q(x) = 1 − Φ(x). Boost reflects as well, but
+/// computes Q in extended precision.
+double owens_t(double h, double p) {
+  const double first = std::abs(h);
+  const double second = std::abs(p);
+  const bool negative = (h < 0.0) != (p < 0.0);
+  double value = 0.0;
+  if (second <= first) {
+    value = boost::math::owens_t(first, second / first, PlainDouble());
+  } else {
+    const double beyond_first = normal_cumulative(-first);
+    const double beyond_second = normal_cumulative(-second);
+    value = 0.5 * (beyond_first + beyond_second) - beyond_first * beyond_second -
+            boost::math::owens_t(second, first / second, PlainDouble());
+  }
+  return negative ? -value : value;
+}
+
 /// P(X ≤ h, Y ≤ k) for standard normal X, Y of correlation r, |r| < 1 (Owen 1956): half of
 /// Φ(h) + Φ(k), less T(h, (k − rh)/(h√(1 − r²))) and its mirror image, less ½ where the signs of h
 /// and k differ.
@@ -35,10 +54,8 @@ double quadrant(double h, double k, double r) {
   if (k > kFar) return normal_cumulative(h);
   const double root = std::sqrt((1.0 - r) * (1.0 + r));
   if (h == 0.0 && k == 0.0) return 0.25 + std::asin(r) / (2.0 * std::numbers::pi);
-  // T(0, ±∞) = ±¼, with the sign of the quotient.
   const auto owen = [&](double first, double second) {
-    if (first == 0.0) return second > 0.0 ? 0.25 : -0.25;
-    return boost::math::owens_t(first, (second - r * first) / (first * root), PlainDouble());
+    return owens_t(first, (second - r * first) / root);
   };
   const double opposite = h * k < 0.0 || (h * k == 0.0 && h + k < 0.0) ? 0.5 : 0.0;
   return 0.5 * (normal_cumulative(h) + normal_cumulative(k)) - owen(h, k) - owen(k, h) - opposite;

@@ -25,7 +25,8 @@ const SurrogateBounds& RecentBounds::of(const PredictedMotion& motion) {
   if (entry == entries_.end()) {
     Entry made{.belief = motion.belief,
                .policy = motion.policy,
-               .bounds = surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast, run_)};
+               .bounds = surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast, run_,
+                                          WantedBounds::kLeast)};
     if (entries_.size() == kMostEntries) entries_.pop_back();
     entries_.push_back(std::move(made));
     entry = entries_.end() - 1;

@@ -81,7 +81,8 @@ class ProjectedLaw {
             .error = error_,
             .higher = higher_,
             .smoothing = smoothing_,
-            .worthwhile = state_.worthwhile};
+            .worthwhile = state_.worthwhile,
+            .wanted = state_.wanted};
   }
 
  private:

@@ -42,7 +42,8 @@ class RelativeLaw {
             .error = state_.error,
             .higher = state_.higher,
             .smoothing = smoothing_,
-            .worthwhile = state_.worthwhile};
+            .worthwhile = state_.worthwhile,
+            .wanted = state_.wanted};
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -177,37 +178,49 @@ TEST(Planner, invalid_beliefs_are_refused_even_after_a_valid_one) {
 
 TEST(Planner, invalid_settings_are_refused) {
   const auto car = dubins_car();
-  const auto refused = [&](const char* what, const std::function<void(PlannerSettings&)>& spoil) {
+  const auto refused = [&](const char* says, const std::function<void(PlannerSettings&)>& spoil) {
     PlannerSettings settings = dubins_settings();
     spoil(settings);
-    EXPECT_THROW(Planner(*car, settings), std::invalid_argument) << what;
+    try {
+      const Planner planner(*car, settings);
+      ADD_FAILURE() << "not refused: " << says;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos)
+          << error.what() << " does not say: " << says;
+    }
   };
   const double nan = std::nan("");
-  refused("horizon", [](auto& s) { s.horizon = 0; });
-  refused("evaluations", [](auto& s) { s.max_evaluations = 0; });
-  refused("state points", [](auto& s) { s.state_points = 0; });
-  refused("noise points", [](auto& s) { s.noise_points = 0; });
-  refused("compressed points", [](auto& s) { s.compressed_points = 0; });
-  refused("solver", [](auto& s) { s.solver = "oracle"; });
-  refused("propagator", [](auto& s) { s.propagator = "telepathy"; });
-  refused("noise size", [](auto& s) { s.noise_covariance = Eigen::MatrixXd::Identity(2, 2); });
-  refused("noise sign", [](auto& s) { s.noise_covariance(0, 0) = -0.1; });
-  refused("state cost", [&](auto& s) { s.cost.state(0, 0) = nan; });
-  refused("asymmetric state cost", [](auto& s) { s.cost.state(0, 1) = 1.0; });
-  refused("asymmetric terminal cost", [](auto& s) { s.cost.terminal(2, 1) = 1.0; });
-  refused("input cost size", [](auto& s) { s.cost.input = Eigen::MatrixXd::Ones(2, 2); });
-  refused("target", [&](auto& s) { s.cost.target[0] = nan; });
-  refused("target size", [](auto& s) { s.cost.target = Eigen::VectorXd::Zero(2); });
-  refused("length", [](auto& s) { s.penalty.length = 0.0; });
-  refused("box penalty", [](auto& s) { s.penalty.box = -1.0; });
-  refused("obstacle penalty", [&](auto& s) { s.penalty.obstacle = nan; });
-  refused("safe set size", [](auto& s) { s.safe_set = unbounded_safe_set(2); });
-  refused("safe set order", [](auto& s) { s.safe_set.bounds.lower[0] = 13.0; });
-  refused("bounds order", [](auto& s) { s.bounds.lower[0] = 2.0; });
-  refused("bounds finite",
+  refused("the horizon must be at least 1", [](auto& s) { s.horizon = 0; });
+  refused("at least one evaluation", [](auto& s) { s.max_evaluations = 0; });
+  refused("one point is needed for the belief", [](auto& s) { s.state_points = 0; });
+  refused("at least one cell and one part", [](auto& s) { s.noise_points = 0; });
+  refused("at least one cell and one part", [](auto& s) { s.compressed_points = 0; });
+  refused("oracle", [](auto& s) { s.solver = "oracle"; });
+  refused("telepathy", [](auto& s) { s.propagator = "telepathy"; });
+  refused("the noise covariance must be a finite matrix of 3 x 3",
+          [](auto& s) { s.noise_covariance = Eigen::MatrixXd::Identity(2, 2); });
+  refused("covariance", [](auto& s) { s.noise_covariance(0, 0) = -0.1; });
+  refused("the state cost must be a finite", [&](auto& s) { s.cost.state(0, 0) = nan; });
+  refused("the state cost must be symmetric", [](auto& s) { s.cost.state(0, 1) = 1.0; });
+  refused("the terminal cost must be symmetric", [](auto& s) { s.cost.terminal(2, 1) = 1.0; });
+  refused("the input cost must be a finite matrix of 1 x 1",
+          [](auto& s) { s.cost.input = Eigen::MatrixXd::Ones(2, 2); });
+  refused("the target must be a finite state", [&](auto& s) { s.cost.target[0] = nan; });
+  refused("the target must be a finite state",
+          [](auto& s) { s.cost.target = Eigen::VectorXd::Zero(2); });
+  refused("length must be positive", [](auto& s) { s.penalty.length = 0.0; });
+  refused("weights must not be negative", [](auto& s) { s.penalty.box = -1.0; });
+  refused("weights must not be negative", [&](auto& s) { s.penalty.obstacle = nan; });
+  refused("the safe set must have", [](auto& s) { s.safe_set = unbounded_safe_set(2); });
+  refused("lower must be less than upper", [](auto& s) { s.safe_set.bounds.lower[0] = 13.0; });
+  refused("the input bounds must be finite, lower < upper",
+          [](auto& s) { s.bounds.lower[0] = 2.0; });
+  refused("the input bounds must be finite, lower < upper",
           [](auto& s) { s.bounds.upper[0] = std::numeric_limits<double>::infinity(); });
-  refused("bounds size", [](auto& s) { s.bounds.lower = Eigen::VectorXd::Zero(2); });
-  refused("gain size", [](auto& s) { s.feedback_gain = Eigen::MatrixXd::Zero(3, 1); });
+  refused("the input bounds must be finite, lower < upper",
+          [](auto& s) { s.bounds.lower = Eigen::VectorXd::Zero(2); });
+  refused("the feedback gain must be",
+          [](auto& s) { s.feedback_gain = Eigen::MatrixXd::Zero(3, 1); });
   EXPECT_NO_THROW(Planner(*car, dubins_settings()));
 }
 

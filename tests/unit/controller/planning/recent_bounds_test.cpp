@@ -42,8 +42,8 @@ class RecentBoundsTest : public ::testing::Test {
   /// Whether these bounds had to be computed, after a comparison with the right ones.
   bool computes(const Gaussian& belief, const Policy& policy) {
     const PredictedMotion motion = motion_of(belief, policy);
-    const SurrogateBounds expected =
-        surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast, run_in_turn);
+    const SurrogateBounds expected = surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast,
+                                                      run_in_turn, WantedBounds::kLeast);
     const int before = loops_;
     const SurrogateBounds& bounds = recent_.of(motion);
     EXPECT_EQ(bounds.bounds.size(), expected.bounds.size());

@@ -129,7 +129,8 @@ TEST(RiskModel, says_what_was_certified_of_the_plan_that_it_holds) {
 }
 
 TEST(RiskConstraint, is_the_logarithm_of_the_risk_over_its_limit) {
-  const auto car = dubins_car();
+  // The input of a period moves this car within the period, so that every limit has a slope.
+  const auto car = models::make_dynamics("dubins_rk4", {{"speed", 1.5}}, 0.1);
   PlannerSettings settings = block_settings();
   settings.risk = {.first = 0.01, .stage = 0.05, .plan = 0.1};
   RiskConstraint constraint(*car, settings);
