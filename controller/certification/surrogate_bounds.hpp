@@ -23,7 +23,8 @@ struct SurrogateBounds {
 
 /// Needs neither particles nor their distances: the motion's prediction may be empty. Where the
 /// bounds are large, the surrogate with the narrow core is also tried: its core is left more often,
-/// but its residuals are smaller.
+/// but its residuals are smaller. wanted: with kLeast, C3 (`markov`) may be looser than need be; C4
+/// is the same.
 [[nodiscard]] SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
                                                const UnsafeSet& unsafe, CertificateEffort effort,
                                                const Executor& run,
