@@ -22,9 +22,9 @@ namespace qsmpc::controller {
 
 /// How much effort goes into each bound.
 enum class CertificateEffort {
-  kLeast,     ///< for control: no C5, C2 only where it can be the least (else 1), C3 and C4 without
-              ///< searches that could gain at most 1e-4 for a part of the unsafe set
-  kEvery,     ///< every bound, for comparisons of many plans
+  kLeast,  ///< for control: no C5, C2 only where it can be the least (else 1), C4 without searches
+           ///< that could gain at most 1e-4 for a part of the unsafe set, C3 as far as it lowers C4
+  kEvery,  ///< every bound, for comparisons of many plans
   kTightest,  ///< every bound as tight as possible, for one plan: seconds where C5 helps
 };
 

@@ -21,14 +21,21 @@ struct SurrogateBounds {
   Eigen::MatrixXd shares;
 };
 
+/// Where the bounds are large, for which stages the surrogate with the narrow core is tried.
+enum class NarrowCore {
+  kAlways,     ///< for all
+  kIfTelling,  ///< for one stage, and for all if that shows that the others may gain much: in
+               ///< planning, where bounds that large seldom decide anything
+};
+
 /// Needs neither particles nor their distances: the motion's prediction may be empty. Where the
 /// bounds are large, the surrogate with the narrow core is also tried: its core is left more often,
-/// but its residuals are smaller. wanted: with kLeast, C3 (`markov`) may be looser than need be; C4
-/// is the same.
+/// but its residuals are smaller: for all stages, or in the way that `narrow` says. With the least
+/// effort C3 (`markov`) is searched for only as far as it may lower C4, and is looser elsewhere.
 [[nodiscard]] SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
                                                const UnsafeSet& unsafe, CertificateEffort effort,
                                                const Executor& run,
-                                               WantedBounds wanted = WantedBounds::kBoth);
+                                               NarrowCore narrow = NarrowCore::kAlways);
 
 /// C4 with one core and under the tilted law of the noise, C3 only as far as it may lower C4; a
 /// tilt only for motions without a model error. worthwhile: per stage, the contribution of a part

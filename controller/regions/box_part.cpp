@@ -48,22 +48,22 @@ void add_part_probability(const SurrogateLaw& state, const BoxPart& part, Region
   double markov = far_region_bound(state.law, state.higher[highest], kHigherOrders[highest], part,
                                    kNegligibleTail);
   double smooth = markov;
-  const auto useful_markov = [&] {
-    const bool both = state.wanted == WantedBounds::kBoth;
-    return both ? 1.0 : std::max({smooth, state.worthwhile, kNegligibleTail});
-  };
+  const bool least = state.wanted == WantedBounds::kLeast;
+  const double enough = std::max(state.worthwhile, kNegligibleTail);
+  const auto reached = [&] { return least ? std::min(smooth, state.useful) : smooth; };
+  const auto useful = [&] { return least ? std::max(reached(), enough) : 1.0; };
   if (markov > kNegligibleTail) {
     const Eigen::MatrixXd smoothing = state.smoothing(part.axes);
     const PerturbedGaussian perturbed{
         .law = state.law, .error = state.error, .smoothing = smoothing};
     smooth = std::min(smooth, smooth_region_bound(perturbed, part));
-    markov = std::min(markov, markov_region_bound(perturbed, part, useful_markov()));
+    markov = std::min(markov, markov_region_bound(perturbed, part, useful()));
     smooth = std::min(smooth, markov);
   }
   // Searches in two coordinates are expensive: done only where they can matter.
-  for (std::size_t k = kHigherOrders.size(); k-- > 0 && smooth > state.worthwhile;) {
-    markov = std::min(markov, tail_region_bound(state.law, state.higher[k], kHigherOrders[k], part,
-                                                useful_markov()));
+  for (std::size_t k = kHigherOrders.size(); k-- > 0 && reached() > state.worthwhile;) {
+    markov = std::min(
+        markov, tail_region_bound(state.law, state.higher[k], kHigherOrders[k], part, useful()));
     smooth = std::min(smooth, markov);
   }
   sum.markov += markov;

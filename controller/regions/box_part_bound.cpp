@@ -25,14 +25,16 @@ constexpr int kPartOctaves = 24;
 // gives 1 % in t.
 constexpr int kFineSteps = 8;
 constexpr int kFinestSteps = 56;
-// Golden-section search for τ in the bounds by norms of higher order, up to τ = 30, where the tail
-// τ⁻⁴ of order 4 is about 1e-6.
+// Search for τ in the bounds by norms of higher order, up to τ = 30, where the tail τ⁻⁴ of order 4
+// is about 1e-6: it tries powers of the first ratio, then searches about the best of them by golden
+// sections until it knows τ to the second.
 constexpr double kLargestTailRatio = 30.0;
-constexpr int kTailSteps = 7;
+constexpr double kTailRatio = 1.4;
+constexpr double kTailAccuracy = 1.08;
 // Probabilities at or below this count as zero for every certificate.
 constexpr double kZeroProbability = 1e-9;
-// Above this estimate a part is not far away.
-constexpr double kNotFar = 0.05;
+// Above this estimate a part is not far away: its bound deserves a search.
+constexpr double kNotFar = 1e-3;
 // Determinant of n's covariance relative to the product of the variances: below this, rounding
 // dominates.
 constexpr double kLeastDeterminant = 1e-12;
@@ -152,9 +154,9 @@ class WidenedPart {
 
   /// Bound of the probability that e exceeds the widening, |axes| τ^−p.
   [[nodiscard]] double tails(double ratio, int order) const {
-    double power = static_cast<double>(axes_.size());
-    for (int k = 0; k < order; ++k) power /= ratio;
-    return power;
+    double power = 1.0;
+    for (int k = 0; k < order; ++k) power *= ratio;
+    return static_cast<double>(axes_.size()) / power;
   }
 
   /// An upper bound of P(z ∈ part widened by τ norms): the least over its coordinates and, unless
@@ -284,34 +286,73 @@ class ReachSearch {
   double least_value_ = kInfinity;
 };
 
-/// Minimiser of `value` over [first, first · ratio] by golden-section search in the logarithm.
-/// `value` should be unimodal; if it is not, the result is one of its local minima.
-template <class Value>
-double least_on_logarithmic_scale(const Value& value, double first, double ratio, int steps) {
-  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  double low = std::log(first);
-  double high = low + std::log(ratio);
-  double inner = high - golden * (high - low);
-  double outer = low + golden * (high - low);
-  double at_inner = value(std::exp(inner));
-  double at_outer = value(std::exp(outer));
-  for (int step = 0; step < steps; ++step) {
-    if (at_inner < at_outer) {
-      high = outer;
-      outer = inner;
-      at_outer = at_inner;
-      inner = high - golden * (high - low);
-      at_inner = value(std::exp(inner));
-    } else {
-      low = inner;
-      inner = outer;
-      at_inner = at_outer;
-      outer = low + golden * (high - low);
-      at_outer = value(std::exp(outer));
+/// Search for a τ that nearly minimises tails(τ) + estimate(τ), the first of which falls and the
+/// second grows; their sum may have several minima.
+class TailSearch {
+ public:
+  TailSearch(WidenedPart& widened, int order) : widened_(widened), order_(order) {}
+
+  /// useless: a τ at or below which the minimum is not.
+  double best(double useless) {
+    double tau = 1.0;
+    while (tau <= useless) tau *= kTailRatio;
+    // Where the second term alone exceeds the least value, so it does for every larger τ.
+    while (tau <= kLargestTailRatio && try_ratio(tau).second < least_) tau *= kTailRatio;
+    golden_section(best_ / kTailRatio, best_ * kTailRatio);
+    return best_;
+  }
+
+ private:
+  struct Terms {
+    double first;
+    double second;
+  };
+
+  Terms try_ratio(double tau) {
+    const Terms terms{.first = widened_.tails(tau, order_), .second = widened_.estimate(tau)};
+    if (terms.first + terms.second < least_) {
+      least_ = terms.first + terms.second;
+      best_ = tau;
+    }
+    return terms;
+  }
+
+  double value(double logarithm) {
+    const Terms terms = try_ratio(std::exp(logarithm));
+    return terms.first + terms.second;
+  }
+
+  /// In the logarithm.
+  void golden_section(double first, double last) {
+    const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+    double low = std::log(first);
+    double high = std::log(last);
+    double inner = high - golden * (high - low);
+    double outer = low + golden * (high - low);
+    double at_inner = value(inner);
+    double at_outer = value(outer);
+    while (high - low > std::log(kTailAccuracy)) {
+      if (at_inner < at_outer) {
+        high = outer;
+        outer = inner;
+        at_outer = at_inner;
+        inner = high - golden * (high - low);
+        at_inner = value(inner);
+      } else {
+        low = inner;
+        inner = outer;
+        at_inner = at_outer;
+        outer = low + golden * (high - low);
+        at_outer = value(outer);
+      }
     }
   }
-  return std::exp(at_inner < at_outer ? inner : outer);
-}
+
+  WidenedPart& widened_;
+  int order_;
+  double best_ = 1.0;
+  double least_ = kInfinity;
+};
 
 }  // namespace
 
@@ -335,10 +376,9 @@ double tail_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int 
   WidenedPart widened(law, norms, part);
   // Below this τ the tails alone exceed `useful`; the probability grows with τ.
   const double least = std::pow(static_cast<double>(part.axes.size()) / useful, 1.0 / order);
+  if (least >= kLargestTailRatio) return 1.0;
   if (useful < 1.0 && widened.estimate(least) >= useful) return 1.0;
-  const double ratio = least_on_logarithmic_scale(
-      [&](double tau) { return widened.tails(tau, order) + widened.estimate(tau); }, 1.0,
-      kLargestTailRatio, kTailSteps);
+  const double ratio = TailSearch(widened, order).best(least);
   return std::min(1.0, widened.tails(ratio, order) + widened.probability(ratio));
 }
 

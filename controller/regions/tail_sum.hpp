@@ -16,6 +16,9 @@ namespace qsmpc::controller {
 /// probability.
 [[nodiscard]] double extended_tail(double z);
 
+/// Beyond this many standard deviations a tail is 0 in double precision.
+inline constexpr double kNoTail = 39.0;
+
 /// Σ over parts of extended_tail(z), z being the number of standard deviations between the mean and
 /// the part's nearest point; negative inside.
 class TailSum {

@@ -5,6 +5,8 @@
 // touching one is unsafe.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -48,6 +50,9 @@ struct SurrogateLaw {
   /// A bound at or below this value need not be refined.
   double worthwhile = 0.0;
   WantedBounds wanted = WantedBounds::kBoth;
+  /// With kLeast: a greater bound is of no use, since one this low is known already, and need not
+  /// be found.
+  double useful = 1.0;
 };
 
 /// Upper bounds of probabilities; each region adds its own.
@@ -128,6 +133,13 @@ class UnsafeRegion {
                                RegionProbability& sum) const = 0;
   /// Adds the tails of the region's convex parts: smooth, for optimisation; not a bound.
   virtual void add_tail(Eigen::Index stage, const Gaussian& law, TailSum& sum) const = 0;
+  /// A distance by which the law's mean may be moved before a tail may be added; 0 if one may be
+  /// added already.
+  [[nodiscard]] virtual double distance_without_tail(Eigen::Index stage,
+                                                     const Gaussian& law) const {
+    const double reach = kNoTail * std::sqrt(law.covariance.trace());
+    return std::max(0.0, signed_distance(stage, law.mean) - reach);
+  }
   /// An upper bound of E(1 − d(y, region)²/t²)₊ for y ~ N(mean, covariance); t > 0. It may be a sum
   /// over parts and exceed 1.
   [[nodiscard]] virtual double soft_probability(Eigen::Index stage,

@@ -26,7 +26,7 @@ const SurrogateBounds& RecentBounds::of(const PredictedMotion& motion) {
     Entry made{.belief = motion.belief,
                .policy = motion.policy,
                .bounds = surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast, run_,
-                                          WantedBounds::kLeast)};
+                                          NarrowCore::kIfTelling)};
     if (entries_.size() == kMostEntries) entries_.pop_back();
     entries_.push_back(std::move(made));
     entry = entries_.end() - 1;

@@ -19,9 +19,8 @@ class RecentBounds {
   /// Keeps references to both.
   RecentBounds(const UnsafeSet& unsafe, const Executor& run) : unsafe_(unsafe), run_(run) {}
 
-  /// surrogate_bounds(motion, …) with the least effort, and C3 only as far as it may lower C4;
-  /// valid until the next call. Since the last `forget`, only the policy and the belief may have
-  /// changed.
+  /// surrogate_bounds(motion, …) with the least effort and NarrowCore::kIfTelling; valid until the
+  /// next call. Since the last `forget`, only the policy and the belief may have changed.
   const SurrogateBounds& of(const PredictedMotion& motion);
   /// To be called if anything else has changed: the laws of moving obstacles, the period.
   void forget() { entries_.clear(); }

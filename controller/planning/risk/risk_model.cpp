@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "controller/certification/statistical_linearisation.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc::controller {
 namespace {
@@ -78,31 +79,42 @@ void RiskModel::hold(const PredictedMotion& motion, const std::vector<SurrogateS
     held.by_gain.resize(0, 0);
     if (held.transition.size() > 0) held.by_gain = response_to_gains(motion, k, surrogates[k]);
     leaving_[k] = stage.leaving;
-    hold_discs(stage.law, held);
+    hold_discs(k + 1, stage.law, held);
   }
 }
 
 /// Places the discs for a surrogate with this law, and computes their laws.
-void RiskModel::hold_discs(const Gaussian& law, Held& held) const {
+void RiskModel::hold_discs(Eigen::Index stage, const Gaussian& law, Held& held) const {
   held.reach.clear();
   held.turn.clear();
   held.laws.clear();
+  held.centres.clear();
+  held.silent.clear();
   held.finite = law.covariance.allFinite();
   for (const DiscView& disc : unsafe_.discs()) {
     const DiscPlacement& placement = disc.placement;
     const Eigen::Index dim = law.mean.size();
     held.turn.push_back(Eigen::MatrixXd::Identity(dim, dim));
     held.reach.push_back(placement.reach());
-    held.laws.push_back(law);
-    if (placement.at_position()) continue;
-    const int heading = placement.heading();
-    const double angle = law.mean[heading] + placement.bearing();
-    const double variance = std::max(0.0, law.covariance(heading, heading));
-    held.reach.back() *= std::exp(-0.5 * variance);
-    held.turn.back()(placement.x(), heading) -= held.reach.back() * std::sin(angle);
-    held.turn.back()(placement.y(), heading) += held.reach.back() * std::cos(angle);
-    held.laws.back().covariance.noalias() =
-        held.turn.back() * law.covariance.lazyProduct(held.turn.back().transpose());
+    Gaussian& centre = held.laws.emplace_back(law);
+    if (!placement.at_position()) {
+      const int heading = placement.heading();
+      const double angle = law.mean[heading] + placement.bearing();
+      const double variance = std::max(0.0, law.covariance(heading, heading));
+      double& reach = held.reach.back();
+      reach *= std::exp(-0.5 * variance);
+      held.turn.back()(placement.x(), heading) -= reach * std::sin(angle);
+      held.turn.back()(placement.y(), heading) += reach * std::cos(angle);
+      centre.covariance.noalias() =
+          held.turn.back() * law.covariance.lazyProduct(held.turn.back().transpose());
+      centre.mean[placement.x()] += reach * std::cos(angle);
+      centre.mean[placement.y()] += reach * std::sin(angle);
+    }
+    held.centres.push_back(centre.mean);
+    std::vector<double>& silent = held.silent.emplace_back();
+    for (const RegionPointer& region : disc.regions) {
+      silent.push_back(held.finite ? region->distance_without_tail(stage, centre) : 0.0);
+    }
   }
 }
 
@@ -221,7 +233,11 @@ void RiskModel::add_disc_tails(Eigen::Index k, std::size_t d) {
     }
   }
   tails_.clear(stage.mean.size());
-  for (const RegionPointer& region : disc.regions) region->add_tail(k + 1, law, tails_);
+  // How far away a region stays is known for the held covariance only.
+  const double moved = stage.by_gains ? kInfinity : (law.mean - held.centres[d]).norm();
+  for (std::size_t r = 0; r < disc.regions.size(); ++r) {
+    if (moved >= held.silent[d][r]) disc.regions[r]->add_tail(k + 1, law, tails_);
+  }
   stage.tails += tails_.value();
   stage.by_mean += tails_.by_mean();
   if (!placement.at_position()) {

@@ -49,14 +49,17 @@ class RiskModel {
  private:
   /// Stage k + 1, and the step to it.
   struct Held {
-    Eigen::VectorXd shift;              ///< offset of the mean from the noise-free path
-    Eigen::MatrixXd covariance;         ///< with unchanged gains
-    Eigen::MatrixXd transition;         ///< of the step
-    Eigen::MatrixXd by_gain;            ///< of the step: B times the slopes of the clamps
-    std::vector<double> reach;          ///< of each disc, shrunk by the heading's spread
-    std::vector<Eigen::MatrixXd> turn;  ///< of each disc: its law's covariance is turn S turnᵀ
-    std::vector<Gaussian> laws;         ///< of each disc; the mean is set on evaluation
-    bool finite = true;                 ///< whether their covariances are
+    Eigen::VectorXd shift;                 ///< offset of the mean from the noise-free path
+    Eigen::MatrixXd covariance;            ///< with unchanged gains
+    Eigen::MatrixXd transition;            ///< of the step
+    Eigen::MatrixXd by_gain;               ///< of the step: B times the slopes of the clamps
+    std::vector<double> reach;             ///< of each disc, shrunk by the heading's spread
+    std::vector<Eigen::MatrixXd> turn;     ///< of each disc: its law's covariance is turn S turnᵀ
+    std::vector<Gaussian> laws;            ///< of each disc; the mean is set on evaluation
+    std::vector<Eigen::VectorXd> centres;  ///< means of the discs' laws at the held plan
+    std::vector<std::vector<double>>
+        silent;          ///< distance_without_tail of each disc's regions there
+    bool finite = true;  ///< whether their covariances are
   };
   /// The ingredients of a risk at the current decision.
   struct Evaluated {
@@ -68,7 +71,7 @@ class RiskModel {
     bool by_gains = false;  ///< whether the covariance depends on the decision
   };
 
-  void hold_discs(const Gaussian& law, Held& held) const;
+  void hold_discs(Eigen::Index stage, const Gaussian& law, Held& held) const;
   void roll_out(const Eigen::VectorXd& z);
   void add_tails(Eigen::Index k);
   void add_disc_tails(Eigen::Index k, std::size_t disc);

@@ -41,6 +41,13 @@ DirectionPair pair_of(const Eigen::Vector2d& one, const Eigen::Vector2d& two) {
   return pair;
 }
 
+/// By repeated multiplication, which takes less time than std::pow.
+double power(double base, int exponent) {
+  double product = 1.0;
+  for (int k = 0; k < exponent; ++k) product *= base;
+  return product;
+}
+
 /// The rectangle about the part in the projections.
 BoxPart rectangle_about(const ConvexPart& part, const DirectionPair& pair) {
   BoxPart rectangle{.box = {.lower = Eigen::Vector2d::Constant(-kInfinity),
@@ -76,13 +83,14 @@ class ProjectedLaw {
   ProjectedLaw(const ProjectedLaw&) = delete;
   ProjectedLaw& operator=(const ProjectedLaw&) = delete;
 
-  [[nodiscard]] SurrogateLaw surrogate() const {
+  [[nodiscard]] SurrogateLaw surrogate(double useful) const {
     return {.law = law_,
             .error = error_,
             .higher = higher_,
             .smoothing = smoothing_,
             .worthwhile = state_.worthwhile,
-            .wanted = state_.wanted};
+            .wanted = state_.wanted,
+            .useful = std::min(useful, state_.useful)};
   }
 
  private:
@@ -139,7 +147,7 @@ double far_probability(const SurrogateLaw& state, const Circle& circle, PlaneAxe
   constexpr std::size_t kHighest = kHigherOrders.size() - 1;
   const Eigen::VectorXd& norms = state.higher[kHighest];
   const double norm = std::abs(u.x()) * norms[axes.x] + std::abs(u.y()) * norms[axes.y];
-  const double tail = norm > 0.0 ? std::pow(norm / half, kHigherOrders[kHighest]) : 0.0;
+  const double tail = norm > 0.0 ? power(norm / half, kHigherOrders[kHighest]) : 0.0;
   const double deviation = std::sqrt(std::max(0.0, variance));
   const double beyond =
       half > kTail * deviation ? kTailAllowance : normal_cumulative(-half / deviation);
@@ -157,13 +165,15 @@ RegionProbability convex_probability(const SurrogateLaw& state, const ConvexPart
   const auto take = [&](const DirectionPair& pair) {
     const ProjectedLaw projected(state, axes, pair);
     RegionProbability bound;
-    add_part_probability(projected.surrogate(), rectangle_about(part, pair), bound);
+    add_part_probability(projected.surrogate(least.smooth), rectangle_about(part, pair), bound);
     least.markov = std::min(least.markov, bound.markov);
     least.smooth = std::min({least.smooth, bound.smooth, least.markov});
   };
   take(nearest_pair(part, mean));
   // Other pairs cannot matter.
-  if (least.markov <= std::max(state.worthwhile, kNegligiblePart)) return least;
+  const bool both = state.wanted == WantedBounds::kBoth;
+  const double reached = both ? least.markov : least.smooth;
+  if (reached <= std::max(state.worthwhile, kNegligiblePart)) return least;
   for (const DirectionPair& pair : other_pairs(part, mean, covariance)) take(pair);
   return least;
 }

@@ -11,6 +11,8 @@ namespace qsmpc::controller {
 namespace {
 
 constexpr int kNewtonSteps = 6;
+// After a turn by this or less, the next Newton step would change nothing.
+constexpr double kNoTurn = 1e-8;
 // A shorter vector has no direction.
 constexpr double kNoLength = 1e-300;
 
@@ -75,36 +77,39 @@ double rise(const Eigen::Vector2d& n, const Eigen::Vector2d& gap, double radius,
   return t.dot(gap) * n.dot(spread) - (n.dot(gap) - radius) * t.dot(spread);
 }
 
-/// The angle of the unit vector n that maximises (n·gap − radius)/√(nᵀSn), by Newton steps on its
-/// derivative; steps that do not raise the value are shortened.
-double best_angle(const Eigen::Vector2d& gap, double radius, const Eigen::Matrix2d& covariance,
-                  double angle) {
-  const auto direction = [](double at) { return Eigen::Vector2d(std::cos(at), std::sin(at)); };
-  double value = value_along(direction(angle), gap, radius, covariance);
+/// The unit vector n, from one nearby, that maximises (n·gap − radius)/√(nᵀSn), by Newton steps on
+/// the derivative by its angle; steps that do not raise the value are shortened.
+Eigen::Vector2d best_direction(const Eigen::Vector2d& gap, double radius,
+                               const Eigen::Matrix2d& covariance, Eigen::Vector2d n) {
+  double value = value_along(n, gap, radius, covariance);
   for (int step = 0; step < kNewtonSteps; ++step) {
-    const Eigen::Vector2d n = direction(angle);
     const Eigen::Vector2d t(-n.y(), n.x());
+    const Eigen::Vector2d spread = covariance * n;
     // f = a/√q with a = n·gap − radius, q = nᵀSn; the sign of f' is that of g = a' q − a q'/2.
-    const double a = n.dot(gap) - radius;
+    const double along = n.dot(gap);
+    const double a = along - radius;
     const double a1 = t.dot(gap);
-    const double q = n.dot(covariance * n);
-    const double q1 = 2.0 * t.dot(covariance * n);
+    const double q = n.dot(spread);
+    const double q1 = 2.0 * t.dot(spread);
     const double q2 = 2.0 * (t.dot(covariance * t) - q);
     const double g = a1 * q - 0.5 * a * q1;
-    const double g1 = -n.dot(gap) * q + 0.5 * a1 * q1 - 0.5 * a * q2;
+    const double g1 = -along * q + 0.5 * a1 * q1 - 0.5 * a * q2;
     double move = g1 < 0.0 ? -g / g1 : (g > 0.0 ? 0.5 : -0.5);
     move = std::clamp(move, -0.7, 0.7);
+    // A turn by the angle whose tangent is `move`: the derivatives at 0 are the same.
+    if (std::abs(move) <= kNoTurn) return (n + move * t).normalized();
     bool raised = false;
     for (int half = 0; half < 5 && !raised; ++half, move *= 0.5) {
-      const double at = value_along(direction(angle + move), gap, radius, covariance);
+      const Eigen::Vector2d turned = (n + move * t).normalized();
+      const double at = value_along(turned, gap, radius, covariance);
       if (!(at > value)) continue;
       raised = true;
       value = at;
-      angle += move;
+      n = turned;
     }
     if (!raised) break;
   }
-  return angle;
+  return n;
 }
 
 void take(const Eigen::Vector2d& direction, double z, const Eigen::Matrix2d& covariance,
@@ -194,8 +199,8 @@ PlanarSeparation separation(const ConvexPart& part, const Eigen::Vector2d& mean,
     Eigen::Vector2d n = (inverse * gap).normalized();  // the maximum for a radius of 0
     if (!between(n)) n = (before + after).normalized();
     if (part.radius > 0.0) {
-      const double angle = best_angle(gap, part.radius, covariance, std::atan2(n.y(), n.x()));
-      n = {std::cos(angle), std::sin(angle)};
+      if (n.isZero(0.0)) n = Eigen::Vector2d::UnitX();  // about the centre of a disc, any will do
+      n = best_direction(gap, part.radius, covariance, n);
     }
     if (n.allFinite() && between(n)) {
       take(n, value_along(n, gap, part.radius, covariance), covariance, best);

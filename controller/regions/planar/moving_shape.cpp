@@ -112,8 +112,10 @@ class MovingShape final : public UnsafeRegion {
   void add_probability(Eigen::Index stage, const SurrogateLaw& state,
                        RegionProbability& sum) const override {
     for (const ObstaclePlace& place : forecast_->at(index_, stage)) {
+      SurrogateLaw here = state;
+      here.useful = std::min(1.0, state.useful / place.weight);
       const RegionProbability bound = parts_.probability(
-          state, axes_, {.motion = motion(place), .covariance = place.covariance});
+          here, axes_, {.motion = motion(place), .covariance = place.covariance});
       sum.markov += place.weight * std::min(1.0, bound.markov);
       sum.smooth += place.weight * std::min(1.0, bound.smooth);
     }
@@ -144,6 +146,20 @@ class MovingShape final : public UnsafeRegion {
         sum.add(apart.z, plane, std::array<double, 2>{slope.x(), slope.y()}, place.weight);
       }
     }
+  }
+
+  [[nodiscard]] double distance_without_tail(Eigen::Index stage,
+                                             const Gaussian& law) const override {
+    const double floor = least_variance(law.covariance.diagonal().maxCoeff());
+    const Eigen::Matrix2d within = plane_covariance(law.covariance, axes_);
+    const Eigen::Vector2d at = plane_point(law.mean, axes_);
+    double least = kInfinity;
+    for (const ObstaclePlace& place : forecast_->at(index_, stage)) {
+      const double deviation = std::sqrt(largest_variance(within + place.covariance) + floor);
+      const double distance = (at - centre_ - place.offset).norm();
+      least = std::min(least, distance - radius_ - kNoMovingTail * deviation);
+    }
+    return std::max(0.0, least);
   }
 
   [[nodiscard]] double soft_probability(Eigen::Index stage,

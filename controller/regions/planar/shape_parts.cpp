@@ -43,7 +43,8 @@ class RelativeLaw {
             .higher = state_.higher,
             .smoothing = smoothing_,
             .worthwhile = state_.worthwhile,
-            .wanted = state_.wanted};
+            .wanted = state_.wanted,
+            .useful = state_.useful};
   }
 
  private:
@@ -226,7 +227,7 @@ Outline outline_in(const Eigen::Matrix2Xd& outline, PlaneAxes axes, Eigen::Index
 double largest_variance(const Eigen::Matrix2d& covariance) {
   const double mean = 0.5 * covariance.trace();
   const double half = 0.5 * (covariance(0, 0) - covariance(1, 1));
-  return mean + std::hypot(half, covariance(0, 1));
+  return mean + std::sqrt(half * half + covariance(0, 1) * covariance(0, 1));
 }
 
 Hinge hinge(double ratio) {

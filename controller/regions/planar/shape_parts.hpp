@@ -122,9 +122,6 @@ class SoftShape final : public SoftRegion {
 /// The covariance with its variances raised to at least that threshold.
 [[nodiscard]] Eigen::Matrix2d uncertain(Eigen::Matrix2d covariance, double largest);
 
-/// Beyond this many standard deviations a tail is 0 in double precision.
-inline constexpr double kNoTail = 39.0;
-
 /// An outline given in the plane of `axes`, shown in the plane of state coordinates x and y: itself
 /// if these are `axes`, otherwise the rectangle of its extent.
 [[nodiscard]] Outline outline_in(const Eigen::Matrix2Xd& corners, PlaneAxes axes, Eigen::Index x,

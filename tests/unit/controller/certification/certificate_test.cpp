@@ -23,7 +23,8 @@ using namespace testing;
 std::vector<StageCertificate> certificates_of(const Planner& planner, const Gaussian& belief,
                                               const Plan& plan) {
   const PredictedMotion motion = motion_of(planner, belief, plan);
-  return certify(motion, planner.settings().safe_set, error_budget(motion));
+  return certify(motion, planner.settings().safe_set, error_budget(motion),
+                 CertificateEffort::kEvery);
 }
 
 /// A dynamic bicycle at 5 m/s between walls 2 m away, 8 stages; the plan drives straight on.

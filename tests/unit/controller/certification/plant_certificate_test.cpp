@@ -266,11 +266,11 @@ TEST(PlantCertificate, without_any_error_only_the_smoothing_is_less) {
   const SafeSet safe_set = walls(3, 2.0);
   PredictedMotion motion = one.motion();
   const std::vector<StageBudget> model_budgets = error_budget(motion);
-  const auto of_model = certify(motion, safe_set, model_budgets);
+  const auto of_model = certify(motion, safe_set, model_budgets, CertificateEffort::kEvery);
   const ModelError none = bounded(Eigen::Vector3d::Zero());
   motion.model_error = &none;
   const std::vector<StageBudget> budgets = error_budget(motion);
-  const auto of_plant = certify(motion, safe_set, budgets);
+  const auto of_plant = certify(motion, safe_set, budgets, CertificateEffort::kEvery);
   for (std::size_t k = 0; k < of_model.size(); ++k) {
     EXPECT_EQ(budgets[k + 1].total, model_budgets[k + 1].total);
     EXPECT_EQ(of_plant[k].of("c1"), of_model[k].of("c1"));

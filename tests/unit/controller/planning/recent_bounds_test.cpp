@@ -43,7 +43,7 @@ class RecentBoundsTest : public ::testing::Test {
   bool computes(const Gaussian& belief, const Policy& policy) {
     const PredictedMotion motion = motion_of(belief, policy);
     const SurrogateBounds expected = surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast,
-                                                      run_in_turn, WantedBounds::kLeast);
+                                                      run_in_turn, NarrowCore::kIfTelling);
     const int before = loops_;
     const SurrogateBounds& bounds = recent_.of(motion);
     EXPECT_EQ(bounds.bounds.size(), expected.bounds.size());

@@ -103,6 +103,44 @@ TEST(RiskModel, has_the_derivatives_that_it_says) {
   }
 }
 
+// Regions far from the held plan are passed over until a plan may come near; not if the gains, and
+// with them the covariances, change, if only by nothing.
+TEST(RiskModel, knows_of_regions_that_only_another_plan_comes_near) {
+  Generator generator(63);
+  for (const char* system : {"dubins", "bicycle"}) {
+    SCOPED_TRACE(system);
+    Case one = make_case(system, generator);
+    one.dynamics = models::make_dynamics(system, {}, 0.5);
+    one.policy.states = nominal_states(*one.dynamics, one.belief.mean, one.policy.inputs);
+    one.noise *= 1e-4;
+    one.belief.covariance *= 1e-4;
+    const UnsafeSet unsafe(one.safe_set);
+    RiskModel model(*one.dynamics, unsafe);
+    const PredictedMotion motion = one.motion();
+    model.hold(motion, affine_surrogates(motion));
+    const Eigen::Index inputs = one.policy.inputs.size();
+    const Eigen::Index gains = one.policy.inputs.rows() * one.dynamics->state_dim();
+    int silent = 0;
+    int near = 0;
+    for (int repetition = 0; repetition < 50; ++repetition) {
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(inputs + gains);
+      z.head(inputs) = one.policy.inputs.reshaped() + random_matrix(generator, inputs, 1, 0.5);
+      const Eigen::VectorXd all = model.risks(z);
+      const Eigen::VectorXd passed_over = model.risks(z.head(inputs));
+      for (Eigen::Index k = 0; k < kHorizon; ++k) {
+        if (std::isinf(all[k])) {  // deep in the block
+          EXPECT_EQ(passed_over[k], all[k]);
+        } else {
+          EXPECT_NEAR(passed_over[k], all[k], 1e-6 * all[k]) << k;
+        }
+        ++(all[k] < 1e-30 ? silent : near);
+      }
+    }
+    EXPECT_GT(silent, 20);
+    EXPECT_GT(near, 20);
+  }
+}
+
 TEST(RiskModel, says_what_was_certified_of_the_plan_that_it_holds) {
   Generator generator(62);
   const Case one = make_case("dubins", generator);

@@ -187,5 +187,15 @@ TEST(PlanarSeparation, is_the_best_over_all_directions) {
   }
 }
 
+TEST(PlanarSeparation, from_the_centre_of_a_disc_is_a_way_out) {
+  const ConvexPart part = convex_parts(DiscShape{.centre = {0.1, 0.2}, .radius = 0.3}).front();
+  Eigen::Matrix2d covariance;
+  covariance << 0.04, 0.01, 0.01, 0.02;
+  const PlanarSeparation found = separation(part, {0.1, 0.2}, covariance);
+  const Eigen::Vector2d n = found.slope.normalized();
+  EXPECT_NEAR(n.norm(), 1.0, 1e-12);
+  EXPECT_NEAR(found.z, -0.3 / std::sqrt(n.dot(covariance * n)), 1e-9);
+}
+
 }  // namespace planar_shape_test
 }  // namespace qsmpc::controller

@@ -1,5 +1,6 @@
 // Bounds C3 that are searched for only as far as they are useful: they are those of the whole
 // search or 1, and cost C4, which takes the lesser of the two, nothing.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -79,32 +80,51 @@ TEST(UsefulBound, of_c3_is_that_of_the_whole_search_or_not_below_what_is_useful)
   EXPECT_GT(found, 200);
 }
 
+/// The bounds of the part if greater ones than `useful` are not wanted.
+RegionProbability bounds_of(const Case& one, WantedBounds wanted, double useful = 1.0) {
+  const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
+      [&](const std::vector<Eigen::Index>&) { return one.smoothing; };
+  HigherNorms higher;
+  for (Eigen::VectorXd& norms : higher) norms = 1.5 * one.error;
+  RegionProbability sum;
+  add_part_probability({.law = one.law,
+                        .error = one.error,
+                        .higher = higher,
+                        .smoothing = smoothing,
+                        .wanted = wanted,
+                        .useful = useful},
+                       one.part, sum);
+  return sum;
+}
+
 TEST(UsefulBound, leaves_c4_as_it_is) {
   Generator generator(418);
   int lower = 0;
   for (int repetition = 0; repetition < 300; ++repetition) {
     const Case one = random_case(generator);
-    const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
-        [&](const std::vector<Eigen::Index>&) { return one.smoothing; };
-    HigherNorms higher;
-    for (std::size_t k = 0; k < higher.size(); ++k) higher[k] = 1.5 * one.error;
-    const auto with = [&](WantedBounds wanted) {
-      RegionProbability sum;
-      add_part_probability({.law = one.law,
-                            .error = one.error,
-                            .higher = higher,
-                            .smoothing = smoothing,
-                            .wanted = wanted},
-                           one.part, sum);
-      return sum;
-    };
-    const RegionProbability both = with(WantedBounds::kBoth);
-    const RegionProbability least = with(WantedBounds::kLeast);
+    const RegionProbability both = bounds_of(one, WantedBounds::kBoth);
+    const RegionProbability least = bounds_of(one, WantedBounds::kLeast);
     EXPECT_NEAR(least.smooth, both.smooth, kSearch * both.smooth);
     EXPECT_LE(least.smooth, least.markov);
     if (both.markov < least.markov * (1.0 - kSearch)) ++lower;
   }
   EXPECT_GT(lower, 20);
+}
+
+TEST(UsefulBound, below_one_that_is_known_is_found) {
+  Generator generator(419);
+  int below = 0;
+  int above = 0;
+  for (int repetition = 0; repetition < 300; ++repetition) {
+    const Case one = random_case(generator);
+    const double known = std::pow(10.0, uniform(generator, -4.0, 0.0));
+    const double whole = bounds_of(one, WantedBounds::kBoth).smooth;
+    const double found = bounds_of(one, WantedBounds::kLeast, known).smooth;
+    EXPECT_NEAR(std::min(known, found), std::min(known, whole), kSearch * whole);
+    ++(whole < known ? below : above);
+  }
+  EXPECT_GT(below, 50);
+  EXPECT_GT(above, 50);
 }
 
 }  // namespace useful_bound_test
