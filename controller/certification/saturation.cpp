@@ -7,6 +7,7 @@
 
 #include <boost/math/quadrature/gauss.hpp>
 
+#include "controller/measure/normal/integer_power.hpp"
 #include "controller/measure/normal/normal_distribution.hpp"
 
 namespace qsmpc::controller {
@@ -19,18 +20,12 @@ constexpr double kQuadratureRounding = 16.0 * std::numeric_limits<double>::epsil
 constexpr int kQuadratureReach = 12;
 constexpr double kQuadratureError = 1e-8;
 
-double power(double base, int exponent) {
-  double result = 1.0;
-  for (int i = 0; i < exponent; ++i) result *= base;
-  return result;
-}
-
 /// Upper bound of E[|q/s|^p; |Z| > reach]. There |q/s| ≤ 3|Z|: a mean within `reach` deviations of
 /// E sat contributes at most that, Z and the fit |Z| each; for a mean further away, the clamp is
 /// constant up to the reach. E[Z^p; |Z| > r] is at most 2 r^{p−1} φ(r)/(1 − p/r²).
 double beyond_reach(int order) {
   const double squared = kQuadratureReach * kQuadratureReach;
-  return 2.0 * power(3.0, order) * power(kQuadratureReach, order - 1) *
+  return 2.0 * integer_power(3.0, order) * integer_power(kQuadratureReach, order - 1) *
          normal_density(kQuadratureReach) / (1.0 - order / squared);
 }
 
@@ -134,7 +129,7 @@ std::array<double, kHigherOrders.size()> saturation_residual_norms(const Saturat
       const double z = panel[node].z;
       const double q = std::clamp(z, low, high) - centre - fit.slope * z;
       for (std::size_t k = 0; k < norms.size(); ++k) {
-        norms[k] += panel[node].mass * power(q, kHigherOrders[k]);
+        norms[k] += panel[node].mass * integer_power(q, kHigherOrders[k]);
       }
     }
   };

@@ -8,8 +8,7 @@
 #include <boost/math/distributions/normal.hpp>
 
 #include "controller/chance/scenario.hpp"
-#include "controller/planning/cost/angular_target.hpp"
-#include "controller/planning/cost/placed_target.hpp"
+#include "controller/planning/guide/guided_target.hpp"
 #include "controller/planning/plan_in_progress.hpp"
 #include "controller/planning/start/first_guess.hpp"
 #include "models/constants.hpp"
@@ -120,6 +119,7 @@ ChancePlanner::ChancePlanner(const models::Dynamics& dynamics,
       path_count_(paths_of(settings_, dynamics)),
       sampled_(dynamics, settings_.problem.bounds, settings_.problem.horizon,
                settings_.chance.memory),
+      guide_(make_guide(dynamics_, settings_.problem)),
       policies_(dynamics_, settings_.problem),
       weights_(settings_.problem.cost),
       noise_root_(root_of(settings_.problem.noise_covariance)),
@@ -132,7 +132,6 @@ ChancePlanner::ChancePlanner(const models::Dynamics& dynamics,
                            .paths = path_count_});
   constraints_ = std::make_unique<Constraints>(*constraint_, sampled_);
   nominal_.emplace(dynamics_, without_noise(problem));
-  if (problem.guide) guide_.emplace(dynamics_, problem);
   draw_.start.resize(dynamics.state_dim(), path_count_);
   if (path_count_ > 0) draw_.noise.resize(static_cast<std::size_t>(problem.horizon));
   covariances_.resize(static_cast<std::size_t>(problem.horizon) + 1);
@@ -179,17 +178,6 @@ void ChancePlanner::draw(const Gaussian& belief, Eigen::Index period) {
     draw_normals();
     noise.noalias() = noise_root_ * normals_;
   }
-}
-
-void ChancePlanner::place_target(const Gaussian& belief) {
-  const PlannerSettings& problem = settings_.problem;
-  if (guide_) {
-    const Eigen::VectorXd& aim = guide_->aim(belief.mean).state;
-    nearest_target(aim, problem.cost.angles, belief.mean, weights_.target);
-    return;
-  }
-  qsmpc::controller::place_target(problem, dynamics_.description(), belief.mean, progress_,
-                                  weights_);
 }
 
 /// Starts from the inputs of a noise-free plan with penalties, which finds a way round obstacles.
@@ -323,7 +311,8 @@ const ChancePlan& ChancePlanner::make(const Gaussian& belief, Clock::time_point 
   plan_.timing = {};
   plan_.evaluations = 0;
   PlanStopwatch stopwatch;
-  place_target(belief);
+  place_guided_target(guide_, settings_.problem, dynamics_.description(), belief.mean, progress_,
+                      weights_);
   sampled_.hold(belief.mean, draw_);
   const bool warm = under_way_;
   if (warm) {

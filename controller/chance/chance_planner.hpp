@@ -87,7 +87,6 @@ class ChancePlanner {
   const ChancePlan& make(const Gaussian& belief, std::chrono::steady_clock::time_point deadline);
   void move_on();
   void take_result(const Gaussian& belief);
-  void place_target(const Gaussian& belief);
   [[nodiscard]] bool first_guess(const Gaussian& belief,
                                  std::chrono::steady_clock::time_point deadline);
   void hold(const Gaussian& belief);

@@ -19,6 +19,7 @@ ControllerEntry mppi_controller() {
           .summary = "mean of sampled input sequences, weighted by the costs of their rollouts",
           .parts = SamplingController::parts,
           .make = make_mppi,
+          .takes_guide = true,
           .samples = true};
 }
 

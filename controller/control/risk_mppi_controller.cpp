@@ -21,6 +21,7 @@ ControllerEntry risk_mppi_controller() {
       .summary = "mppi with many realisations of the noise: mean cost, and CVaR of being unsafe",
       .parts = SamplingController::parts,
       .make = make_risk_mppi,
+      .takes_guide = true,
       .samples = true};
 }
 

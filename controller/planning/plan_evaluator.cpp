@@ -4,8 +4,7 @@
 #include <cmath>
 #include <compare>
 
-#include "controller/planning/cost/angular_target.hpp"
-#include "controller/planning/cost/placed_target.hpp"
+#include "controller/planning/guide/guided_target.hpp"
 #include "controller/planning/planner_propagator.hpp"
 
 namespace qsmpc::controller {
@@ -65,7 +64,8 @@ PlanEvaluator::PlanEvaluator(const models::Dynamics& dynamics, const PlannerSett
              .within_covariance = within_},
             settings.run),
       constraints_(cost_, settings.safe_set),
-      z_(Eigen::Index{dynamics.input_dim()} * settings.horizon) {
+      z_(Eigen::Index{dynamics.input_dim()} * settings.horizon),
+      guide_(make_guide(dynamics, settings)) {
   if (solver_entry(settings.solver).takes_constraints) constraint_set_.emplace();
   if (!constraint_set_ && CoarseCost::pays(settings)) {
     coarse_.emplace(dynamics, settings,
@@ -77,7 +77,6 @@ PlanEvaluator::PlanEvaluator(const models::Dynamics& dynamics, const PlannerSett
                                      .within_covariance = within_});
   }
   set_limits(settings.risk, 0);
-  if (settings.guide) guide_.emplace(dynamics, settings);
 }
 
 void PlanEvaluator::set_limits(const RiskLimits& limits, Eigen::Index period) {
@@ -127,13 +126,8 @@ void PlanEvaluator::take_belief(const Gaussian& belief, std::optional<double> pr
 }
 
 void PlanEvaluator::place_target() {
-  if (guide_) {
-    const Eigen::VectorXd& aim = guide_->aim(gaussian_.mean).state;
-    nearest_target(aim, settings_.cost.angles, gaussian_.mean, weights_.target);
-    return;
-  }
-  qsmpc::controller::place_target(settings_, dynamics_.description(), gaussian_.mean, progress_,
-                                  weights_);
+  place_guided_target(guide_, settings_, dynamics_.description(), gaussian_.mean, progress_,
+                      weights_);
 }
 
 void PlanEvaluator::set_policy(const Eigen::Ref<const Eigen::MatrixXd>& inputs,

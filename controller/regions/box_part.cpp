@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controller/measure/normal/normal_distribution.hpp"
 #include "controller/regions/box_part_bound.hpp"
+#include "controller/regions/box_part_norm_bound.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::controller {
@@ -40,6 +42,17 @@ BoxPart box_part(const Box& box) {
   BoxPart part{.box = box, .axes = {}};
   for (const AxisInterval& interval : bounded_axes(box)) part.axes.push_back(interval.axis);
   return part;
+}
+
+double slab_probability(const Gaussian& law, const Box& box, Eigen::Index axis) {
+  const double mean = law.mean[axis];
+  const double lower = box.lower[axis];
+  const double upper = box.upper[axis];
+  const double deviation = std::sqrt(std::max(0.0, law.covariance(axis, axis)));
+  if (deviation > 0.0) {
+    return normal_probability((lower - mean) / deviation, (upper - mean) / deviation);
+  }
+  return mean >= lower && mean <= upper ? 1.0 : 0.0;
 }
 
 void add_part_probability(const SurrogateLaw& state, const BoxPart& part, RegionProbability& sum) {

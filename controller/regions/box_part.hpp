@@ -22,6 +22,9 @@ struct BoxPart {
 
 [[nodiscard]] BoxPart box_part(const Box& box);
 
+/// P(z in the part's slab of coordinate `axis`), its limits those of `box`.
+[[nodiscard]] double slab_probability(const Gaussian& law, const Box& box, Eigen::Index axis);
+
 /// Adds bounds of P(z + e in the part), the least of those in box_part_bound.hpp, to the sums.
 void add_part_probability(const SurrogateLaw& state, const BoxPart& part, RegionProbability& sum);
 

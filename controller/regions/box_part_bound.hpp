@@ -22,17 +22,6 @@ struct PerturbedGaussian {
 [[nodiscard]] double markov_region_bound(const PerturbedGaussian& state, const BoxPart& part,
                                          double useful = 1.0);
 
-/// C3 by a norm of higher order: min over τ of |axes| τ^−p + P(z ∈ part widened by τ · norms),
-/// since P(|e_a| > τ ‖e_a‖_p) ≤ τ^−p in each of the part's coordinates. norms: bounds of ‖e_a‖_p
-/// (dim). useful: as above.
-[[nodiscard]] double tail_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
-                                       const BoxPart& part, double useful = 1.0);
-
-/// The same with the single τ that leaves half of `enough` (> 0) to the tails: as good as a search
-/// if the result is at most `enough`. Returns 1 if the part is too near for this τ to be useful.
-[[nodiscard]] double far_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
-                                      const BoxPart& part, double enough);
-
 /// C4: P(z ∈ part) and the first two orders in e of the probability smoothed by n,
 ///     P(z ∈ part) + Σ_a error_a ‖∂_a h‖ + 0.242 E[eᵀ N⁻¹ e],  h(y) = P(y + n ∈ part),
 /// minimised over the part's coordinates and pairs of coordinates.

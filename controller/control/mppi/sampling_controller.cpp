@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "controller/control/mppi/sample_weights.hpp"
-#include "controller/planning/cost/placed_target.hpp"
+#include "controller/planning/guide/guided_target.hpp"
 #include "controller/planning/start/first_guess.hpp"
 #include "models/constants.hpp"
 #include "models/random/random_numbers.hpp"
@@ -56,7 +56,8 @@ SamplingController::SamplingController(const models::Dynamics& dynamics,
       costs_(settings_.samples),
       tilts_(Eigen::ArrayXd::Zero(settings_.samples)),
       weights_(settings_.samples),
-      cost_(problem_.cost) {
+      cost_(problem_.cost),
+      guide_(make_guide(dynamics, problem_)) {
   for (int n = 0; n < chunk_count(settings_.samples); ++n) {
     const Eigen::Index count =
         std::min<Eigen::Index>(kSampleChunk, settings_.samples - n * kSampleChunk);
@@ -112,7 +113,8 @@ void SamplingController::prepare(const Situation& situation) {
   } else {
     policy_.inputs = rest_.replicate(1, problem_.horizon);
   }
-  place_target(problem_, dynamics_.description(), belief.mean, situation.progress, cost_);
+  place_guided_target(guide_, problem_, dynamics_.description(), belief.mean, situation.progress,
+                      cost_);
   rollouts_.place(belief.mean, cost_);
   if (noise_ != SampleNoise::kNone) {
     noise_draw_.emplace(NoiseDraw{.start_root = belief_root_.of(belief.covariance),

@@ -20,6 +20,7 @@
 #include "controller/control/mppi/noise_paths.hpp"
 #include "controller/control/mppi/rollouts.hpp"
 #include "controller/control/path_cost.hpp"
+#include "controller/planning/guide/guide.hpp"
 
 namespace qsmpc::controller {
 
@@ -86,7 +87,8 @@ class SamplingController final : public Controller {
   std::uint64_t seed_ = 0;
   std::uint64_t draws_ = 0;  // number of draws in the drive so far
   bool under_way_ = false;   // whether the inputs come from the last period
-  QuadraticCost cost_;       // about the target nearest to the belief
+  QuadraticCost cost_;       // about the target nearest to the belief, or the guide's aim
+  std::optional<Guide> guide_;
   Policy policy_;
   Eigen::MatrixXd shifted_;
   PathCostScratch cost_scratch_;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "controller/measure/normal/integer_power.hpp"
 #include "controller/measure/normal/normal_distribution.hpp"
 #include "controller/regions/box_part.hpp"
 #include "controller/regions/planar/convex_surface.hpp"
@@ -39,13 +40,6 @@ DirectionPair pair_of(const Eigen::Vector2d& one, const Eigen::Vector2d& two) {
   DirectionPair pair;
   pair << one.transpose(), two.transpose();
   return pair;
-}
-
-/// By repeated multiplication, which takes less time than std::pow.
-double to_the_power(double base, int exponent) {
-  double product = 1.0;
-  for (int k = 0; k < exponent; ++k) product *= base;
-  return product;
 }
 
 /// The rectangle about the part in the projections.
@@ -147,7 +141,7 @@ double far_probability(const SurrogateLaw& state, const Circle& circle, PlaneAxe
   constexpr std::size_t kHighest = kHigherOrders.size() - 1;
   const Eigen::VectorXd& norms = state.higher[kHighest];
   const double norm = std::abs(u.x()) * norms[axes.x] + std::abs(u.y()) * norms[axes.y];
-  const double tail = norm > 0.0 ? to_the_power(norm / half, kHigherOrders[kHighest]) : 0.0;
+  const double tail = norm > 0.0 ? integer_power(norm / half, kHigherOrders[kHighest]) : 0.0;
   const double deviation = std::sqrt(std::max(0.0, variance));
   const double beyond =
       half > kTail * deviation ? kTailAllowance : normal_cumulative(-half / deviation);

@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
+#include "controller/control/controller.hpp"
 #include "controller/planning/guide/travel_field.hpp"
-#include "controller/planning/planner.hpp"
 #include "models/constants.hpp"
 #include "models/dynamics/dubins.hpp"
 
@@ -144,15 +144,17 @@ TEST(Guide, needs_a_plane_with_finite_bounds) {
 }
 
 /// How close a noise-free drive of 200 periods comes to the target.
-double nearest_approach(const models::Dynamics& dynamics, const PlannerSettings& settings) {
-  Planner planner(dynamics, settings);
+double nearest_approach(const char* kind, const models::Dynamics& dynamics,
+                        const PlannerSettings& settings) {
+  const auto controller = make_controller(kind, dynamics, {.problem = settings});
   Gaussian belief{.mean = Eigen::Vector3d(1.0, 5.0, 0.0),
                   .covariance = 1e-4 * Eigen::Matrix3d::Identity()};
   double nearest = kInfinity;
   for (int period = 0; period < 200; ++period) {
-    const Plan& plan = planner.plan(belief);
+    const Decision& decision =
+        controller->decide({.period = period, .belief = belief, .observation = belief.mean});
     models::StateBatch next(3, 1);
-    dynamics.step(models::StateBatch(belief.mean), models::StateBatch(plan.policy.inputs.col(0)),
+    dynamics.step(models::StateBatch(belief.mean), models::StateBatch(decision.input),
                   next);
     belief.mean = next.col(0);
     nearest = std::min(nearest, (belief.mean - settings.cost.target).head<2>().norm());
@@ -162,10 +164,13 @@ double nearest_approach(const models::Dynamics& dynamics, const PlannerSettings&
 
 TEST(Guide, leads_out_of_a_pocket_that_plans_are_caught_in) {
   const auto dynamics = car();
-  PlannerSettings settings = pocket();
-  EXPECT_GT(nearest_approach(*dynamics, settings), 2.0);
-  settings.guide = true;
-  EXPECT_LT(nearest_approach(*dynamics, settings), 0.5);
+  for (const char* kind : {"quantised", "tube", "mppi"}) {
+    SCOPED_TRACE(kind);
+    PlannerSettings settings = pocket();
+    EXPECT_GT(nearest_approach(kind, *dynamics, settings), 2.0);
+    settings.guide = true;
+    EXPECT_LT(nearest_approach(kind, *dynamics, settings), 0.5);
+  }
 }
 
 }  // namespace guide_test

@@ -1,4 +1,5 @@
 #include "controller/regions/box_part_bound.hpp"
+#include "controller/regions/box_part_norm_bound.hpp"
 
 #include <algorithm>
 #include <array>

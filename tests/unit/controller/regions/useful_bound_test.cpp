@@ -9,6 +9,7 @@
 
 #include "controller/regions/box_part.hpp"
 #include "controller/regions/box_part_bound.hpp"
+#include "controller/regions/box_part_norm_bound.hpp"
 #include "controller/regions/unsafe_region.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
