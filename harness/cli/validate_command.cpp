@@ -69,10 +69,11 @@ FileVerdict verdict_on(const std::string& file, const std::vector<std::string>& 
   const bool is_contest = is_contest_file(file);
   if (!is_contest && !is_campaign_file(file)) return verdict_on_scenario(file, overrides);
   if (!overrides.empty()) {
-    throw InputError({.file = file,
-                      .key = "--set",
-                      .found = "a campaign or a contest",
-                      .expected = "a scenario; theirs are changed by their own files"});
+    return {.file = file,
+            .errors = {{.file = file,
+                        .key = "--set",
+                        .found = "a campaign or a contest",
+                        .expected = "a scenario; theirs are changed by their own files"}}};
   }
   if (is_contest) return verdict_on_contest(file);
   try {

@@ -60,10 +60,11 @@ TEST(Commands, validate_takes_the_settings_that_run_takes) {
       run_qsmpc({"validate", "dubins_obstacles", "--set", "plant.mjcf=nowhere.xml"});
   EXPECT_EQ(plant.exit_code, 2);
   EXPECT_THAT(plant.output, HasSubstr("nowhere.xml"));
-  const ProcessResult campaign =
-      run_qsmpc({"validate", "mission_budget", "--set", "controller.horizon=9"});
+  const ProcessResult campaign = run_qsmpc(
+      {"validate", "mission_budget", "dubins_obstacles", "--set", "controller.horizon=9"});
   EXPECT_EQ(campaign.exit_code, 2);
-  EXPECT_THAT(campaign.errors, HasSubstr("found a campaign or a contest, expected a scenario"));
+  EXPECT_THAT(campaign.output, HasSubstr("found a campaign or a contest, expected a scenario"));
+  EXPECT_THAT(campaign.output, HasSubstr("dubins_obstacles: ok"));
 }
 
 TEST(Commands, warn_of_limits_that_the_start_exceeds) {

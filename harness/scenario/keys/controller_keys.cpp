@@ -52,14 +52,15 @@ void check_guide(const ScenarioReading& reading, Section& section) {
   const Scenario::Controller& controller = reading.scenario.controller;
   if (controller.guide == defaults().guide) return;
   const std::vector<controller::ControllerEntry>& known = controller::controllers();
+  const std::string& kind = driving_kind(controller);
   const bool takes_it = std::any_of(known.begin(), known.end(), [&](const auto& entry) {
-    return entry.name == controller.kind && entry.takes_guide;
+    return entry.name == kind && entry.takes_guide;
   });
   std::string guided;
   for (const controller::ControllerEntry& entry : known) {
     if (entry.takes_guide) guided += (guided.empty() ? "" : ", ") + entry.name;
   }
-  if (!takes_it) section.note("guide", "none, or a controller.kind that takes one: " + guided);
+  if (!takes_it) section.note("guide", "none, or a controller that takes one: " + guided);
   const models::SystemDescription& system = reading.system();
   const controller::Box& bounds = reading.scenario.safe_set.bounds;
   for (const int axis : {system.position_x, system.position_y}) {

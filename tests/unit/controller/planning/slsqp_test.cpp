@@ -265,7 +265,33 @@ TEST_F(Slsqp, handles_dozens_of_equal_constraints) {
   for (const VectorXd& start : {VectorXd{{0.0, 0.0}}, VectorXd{{3.0, 1.0}}}) {
     const SolverResult& result = solver_->minimise(problem, start, precise_);
     EXPECT_LE((result.z - VectorXd::Constant(2, std::sqrt(0.5))).cwiseAbs().maxCoeff(), 1e-5);
+    EXPECT_EQ(result.status, SolverStatus::kConverged);
     EXPECT_LE(result.violation, 1e-6);
+  }
+}
+
+TEST_F(Slsqp, goes_on_with_fewer_constraints_where_bundles_of_them_stall_it) {
+  constexpr Eigen::Index kDim = 10;
+  constexpr Eigen::Index kBundles = 5;
+  constexpr Eigen::Index kEach = 30;
+  // How far the normals of a bundle differ: some of these problems stall NLopt's subproblem.
+  constexpr double kApart = 1e-6;
+  Generator generator(8);
+  for (int repetition = 0; repetition < 40; ++repetition) {
+    MatrixXd bundles = random_matrix(generator, kDim, kBundles);
+    bundles.colwise().normalize();
+    const MatrixXd normals = bundles.replicate(1, kEach) +
+                             random_matrix(generator, kDim, kBundles * kEach, kApart);
+    OcpProblem problem = distance_to(random_matrix(generator, kDim, 1, 3.0));
+    const VectorXd start = random_matrix(generator, kDim, 1, 5.0);
+    problem.constraints = half_planes(bundles, VectorXd::Ones(kBundles), asked_);
+    const double expected = solver_->minimise(problem, start, precise_).value;
+    problem.constraints = half_planes(normals, VectorXd::Ones(kBundles * kEach), asked_);
+    const SolverResult& result = solver_->minimise(problem, start, precise_);
+    EXPECT_EQ(result.status, SolverStatus::kConverged) << repetition;
+    EXPECT_LE(result.violation, 1e-6) << repetition;
+    // By about the multipliers times what the normals differ by.
+    EXPECT_NEAR(result.value, expected, 1e-4) << repetition;
   }
 }
 
