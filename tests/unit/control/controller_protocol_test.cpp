@@ -103,6 +103,16 @@ TEST(ControllerProtocol, tells_what_is_known_of_obstacles_that_move) {
   EXPECT_FALSE(without.contains("obstacles"));
 }
 
+TEST(ControllerProtocol, tells_waypoints_as_states_and_where_they_count_as_passed) {
+  const Scenario scenario = outside_scenario(
+      OutsideKind::kExternal,
+      {"target={waypoints: [[1, 0, 0.25], [2, 0.5, 0.5]], radius: 0.3, waypoint_radius: 0.8}"});
+  const nlohmann::json target = message_of(scenario)["target"];
+  EXPECT_EQ(target["waypoints"], nlohmann::json::parse("[[1.0, 0.0, 0.25], [2.0, 0.5, 0.5]]"));
+  EXPECT_EQ(target["waypoint_radius"], 0.8);
+  EXPECT_EQ(target["radius"], 0.3);
+}
+
 TEST(ControllerProtocol, tells_how_many_waypoints_were_passed) {
   const controller::Gaussian belief{.mean = Eigen::Vector2d::Zero(),
                                     .covariance = Eigen::Matrix2d::Identity()};

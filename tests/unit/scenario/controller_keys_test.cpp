@@ -65,12 +65,12 @@ TEST(ControllerKeys, a_guide_needs_a_controller_that_follows_it_and_bounds_of_th
                                    "controller.shield.of=lqr"})
                   .expected,
               HasSubstr("that takes one: quantised, "));
-  EXPECT_EQ(parse_scenario(bounded, {.file = "t.yaml",
-                                     .overrides = {"controller.guide=grid",
-                                                   "controller.kind=shield",
-                                                   "controller.shield.of=mppi"}})
-                .controller.guide,
-            "grid");
+  EXPECT_EQ(
+      parse_scenario(bounded, {.file = "t.yaml",
+                               .overrides = {"controller.guide=grid", "controller.kind=shield",
+                                             "controller.shield.of=mppi"}})
+          .controller.guide,
+      "grid");
   EXPECT_THAT(refusal_of(minimal_text, {"controller.guide=grid"}).expected,
               HasSubstr("finite safe_set.bounds of x"));
 }

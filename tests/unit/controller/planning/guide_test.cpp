@@ -154,8 +154,7 @@ double nearest_approach(const char* kind, const models::Dynamics& dynamics,
     const Decision& decision =
         controller->decide({.period = period, .belief = belief, .observation = belief.mean});
     models::StateBatch next(3, 1);
-    dynamics.step(models::StateBatch(belief.mean), models::StateBatch(decision.input),
-                  next);
+    dynamics.step(models::StateBatch(belief.mean), models::StateBatch(decision.input), next);
     belief.mean = next.col(0);
     nearest = std::min(nearest, (belief.mean - settings.cost.target).head<2>().norm());
   }

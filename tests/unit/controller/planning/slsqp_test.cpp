@@ -280,8 +280,8 @@ TEST_F(Slsqp, goes_on_with_fewer_constraints_where_bundles_of_them_stall_it) {
   for (int repetition = 0; repetition < 40; ++repetition) {
     MatrixXd bundles = random_matrix(generator, kDim, kBundles);
     bundles.colwise().normalize();
-    const MatrixXd normals = bundles.replicate(1, kEach) +
-                             random_matrix(generator, kDim, kBundles * kEach, kApart);
+    const MatrixXd normals =
+        bundles.replicate(1, kEach) + random_matrix(generator, kDim, kBundles * kEach, kApart);
     OcpProblem problem = distance_to(random_matrix(generator, kDim, 1, 3.0));
     const VectorXd start = random_matrix(generator, kDim, 1, 5.0);
     problem.constraints = half_planes(bundles, VectorXd::Ones(kBundles), asked_);

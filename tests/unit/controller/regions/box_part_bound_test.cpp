@@ -1,5 +1,4 @@
 #include "controller/regions/box_part_bound.hpp"
-#include "controller/regions/box_part_norm_bound.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 #include "controller/certification/affine_surrogate.hpp"
 #include "controller/measure/normal/bivariate_normal.hpp"
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "controller/regions/box_part_norm_bound.hpp"
 #include "controller/regions/unsafe_set.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
