@@ -22,7 +22,7 @@ struct BoxPart {
 
 [[nodiscard]] BoxPart box_part(const Box& box);
 
-/// P(z in the part's slab of coordinate `axis`), its limits those of `box`.
+/// The probability that coordinate `axis` of z ~ law lies between the limits of `box`.
 [[nodiscard]] double slab_probability(const Gaussian& law, const Box& box, Eigen::Index axis);
 
 /// Adds bounds of P(z + e in the part), the least of those in box_part_bound.hpp, to the sums.
