@@ -141,6 +141,36 @@ TEST(RiskModel, knows_of_regions_that_only_another_plan_comes_near) {
   }
 }
 
+// Past a stage whose step cannot be linearised nothing is known of how gains act: they change
+// neither the risk there nor its derivatives.
+TEST(RiskModel, keeps_the_covariance_where_the_effect_of_gains_is_unknown) {
+  Generator generator(64);
+  for (const char* system : {"dubins", "double_integrator"}) {
+    SCOPED_TRACE(system);
+    const Case one = make_case(system, generator);
+    const UnsafeSet unsafe(one.safe_set);
+    const PredictedMotion motion = one.motion();
+    std::vector<SurrogateStage> surrogates = affine_surrogates(motion);
+    constexpr Eigen::Index kUnknown = 2;
+    surrogates[kUnknown].transition.resize(0, 0);
+    RiskModel model(*one.dynamics, unsafe);
+    model.hold(motion, surrogates);
+    const Eigen::Index inputs = one.policy.inputs.size();
+    const Eigen::Index gains = one.policy.inputs.rows() * one.dynamics->state_dim();
+    Eigen::VectorXd z(inputs + gains);
+    z << one.policy.inputs.reshaped(), 0.1 * random_matrix(generator, gains, 1);
+    const Eigen::VectorXd changed = model.risks(z);
+    const Eigen::VectorXd plain = model.risks(z.head(inputs));
+    EXPECT_NEAR(changed[kUnknown], plain[kUnknown], 1e-9 * plain[kUnknown]);
+    EXPECT_GT(std::abs(changed[kUnknown - 1] - plain[kUnknown - 1]), 1e-6 * plain[kUnknown - 1]);
+    model.risks(z);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(z.size());
+    model.add_gradient(Eigen::VectorXd::Unit(kHorizon, kUnknown), gradient);
+    EXPECT_GT(gradient.head(inputs).norm(), 0.0);
+    EXPECT_EQ(gradient.tail(gains).norm(), 0.0);
+  }
+}
+
 TEST(RiskModel, says_what_was_certified_of_the_plan_that_it_holds) {
   Generator generator(62);
   const Case one = make_case("dubins", generator);
