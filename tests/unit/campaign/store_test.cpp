@@ -204,6 +204,14 @@ TEST_F(StoreTest, refuses_a_changed_campaign_and_says_what_changed) {
   EXPECT_THAT(refusal(other), HasSubstr("--update"));
 }
 
+// Another version may drive differently, and one campaign is not to be of two kinds.
+TEST_F(StoreTest, refuses_what_another_version_of_the_program_has_begun) {
+  const Campaign campaign = quick_campaign();
+  open(campaign).add(example_row(0, 5), false);
+  database().exec("UPDATE campaign SET version = '0.0.9'");
+  EXPECT_THAT(refusal(campaign), HasSubstr("version: found qsmpc 0.0.9, expected qsmpc "));
+}
+
 // Changes of a figure's families affect no episode.
 TEST_F(StoreTest, takes_the_families_of_a_figure_as_they_are_now) {
   Campaign campaign = testing::quick_campaign();

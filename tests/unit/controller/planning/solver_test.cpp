@@ -91,6 +91,25 @@ TEST_P(EverySolver, returns_the_value_of_the_best_point_and_respects_the_limit) 
   }
 }
 
+// On a curved valley every solver needs more evaluations than these. With the penalty the last one is
+// kept for the result moved into the bounds, which here needs no move.
+TEST_P(EverySolver, uses_all_the_evaluations_that_it_may_make) {
+  OcpProblem problem = boxed_bowl(VectorXd::Zero(2));
+  problem.lower = VectorXd::Constant(2, -3.0);
+  problem.upper = VectorXd::Constant(2, 3.0);
+  problem.cost = [](const VectorXd& z, VectorXd& gradient) {
+    const double bend = z[1] - z[0] * z[0];
+    gradient = VectorXd{{-400.0 * bend * z[0] - 2.0 * (1.0 - z[0]), 200.0 * bend}};
+    return 100.0 * bend * bend + (1.0 - z[0]) * (1.0 - z[0]);
+  };
+  for (const int limit : {2, 3, 6}) {
+    const SolverResult& result = solver_->minimise(
+        problem, VectorXd{{-1.2, 1.0}}, {.max_evaluations = limit, .relative_tolerance = 1e-14});
+    EXPECT_EQ(result.evaluations, may_leave_the_box() ? limit - 1 : limit);
+    EXPECT_EQ(result.status, SolverStatus::kIterationLimit);
+  }
+}
+
 TEST_P(EverySolver, leaves_a_start_at_the_bounds) {
   OcpProblem problem = boxed_bowl(VectorXd{{0.1, 0.5, 0.2, -0.4}});
   const VectorXd start{{0.3, 2.0, -0.1, -1.0}};
