@@ -41,7 +41,8 @@ before(async () => {
     qsmpc("campaign", file, "--quiet", "--out", folders[name]);
   };
   campaign("campaign", "scenario: dubins_obstacles\nvariants: {closed: {}, open: {controller.policy: open_loop}, " +
-    "greedy: {controller.horizon: 3}}\nseeds: {count: 6}\ngrid: {limit.steps: [60]}\ntraces: none\n");
+    "greedy: {controller.horizon: 3}}\nseeds: {count: 6}\ngrid: {limit.steps: [60], controller.quantisation: [auto]}\n" +
+    "plants: [analytic]\ntraces: none\n");
   campaign("campaign_without_plane", "scenario: cart_pole_balance\nseeds: {count: 4}\ntraces: none\n");
   campaign("campaign_of_one", "scenario: dubins_corridor\nseeds: {count: 6}\ntraces: none\n");
   campaign("campaign_rare", "scenario: dubins_corridor\nvariants: {lqr: {controller.kind: lqr, controller.lqr.about: " +
@@ -49,8 +50,9 @@ before(async () => {
     "seeds: {count: 4}\nrare: {particles: 20}\nuntil: {rate_halfwidth: 0.2}\ntraces: none\n");
   folders.contest = temporaryFolder();
   const contest = join(temporaryFolder(), "contest.yaml");
-  writeFileSync(contest, "description: Three ways to drive\ncontrollers: {quantised: {}, nominal: {controller.kind: " +
-    "nominal, risk: {}}, lqr: {controller.kind: lqr, risk: {}}}\nscenarios: [dubins_obstacles, dubins_alley]\n" +
+  writeFileSync(contest, "description: Three ways to drive\n" +
+    "controllers: {quantised: {controller.quantisation: auto}, nominal: {controller.kind: nominal, risk: {}}, " +
+    "lqr: {controller.kind: lqr, risk: {}}}\nscenarios: [dubins_obstacles, dubins_alley]\n" +
     "plants: [analytic]\nseeds: {count: 4}\ntiming: {seeds: 1}\ntuning: {seeds: [9], " +
     "budget: 2, search: {lqr: {controller.lqr.about: [path, target]}}}\n");
   qsmpc("contest", contest, "--quiet", "--out", folders.contest);
@@ -64,26 +66,36 @@ const pages = ["episode", "episode_without_video", "episode_without_plan", "epis
                "campaign_rare", "contest"];
 const pageOf = (name) => join(folders[name], name === "contest" ? "contest.html" : "report.html");
 
+// What is wrong with a page's layout, with a picture of it if anything is.
+async function checkLayout(page, name, screen, colorScheme) {
+  try {
+    assert.deepEqual(await page.evaluate(layoutProblems, {wide: screen === "desktop"}), []);
+    assert.deepEqual(await page.evaluate(lonelyTiles), []);
+    if (!name.startsWith("campaign") && name !== "contest") assert.deepEqual(await page.evaluate(emptyColumns), []);
+  } catch (problem) {
+    await page.screenshot({path: join(artefacts, `layout-${name}-${screen}-${colorScheme}.png`), fullPage: true});
+    throw problem;
+  }
+}
+
 for (const name of pages) {
   for (const [screen, size] of Object.entries(screens)) {
-    for (const colorScheme of ["light", "dark"]) {
-      test(`${name}: ${screen}, ${colorScheme}: no overlap, no clipping, no empty panel`, async () => {
-        const {page, seen} = await openPage(browser, pageOf(name), {...size, colorScheme});
-        await page.waitForTimeout(300);  // charts draw after the page has loaded
-        if (await page.locator("#scene").isVisible()) {  // drawn only when scrolled into view
-          await page.locator("#scene").scrollIntoViewIfNeeded();
-          await page.locator("#scene canvas").waitFor();
-          await page.evaluate(() => window.scrollTo(0, 0));
-        }
-        await page.locator("details").evaluateAll((all) => all.forEach((one) => { one.open = true; }));
-        await page.screenshot({path: join(artefacts, `layout-${name}-${screen}-${colorScheme}.png`), fullPage: true});
-        assert.deepEqual(await page.evaluate(layoutProblems, {wide: screen === "desktop"}), []);
-        assert.deepEqual(await page.evaluate(lonelyTiles), []);
-        if (!name.startsWith("campaign") && name !== "contest") assert.deepEqual(await page.evaluate(emptyColumns), []);
-        assert.deepEqual(seen.errors, []);
-        await page.close();
-      });
-    }
+    test(`${name}: ${screen}: no overlap, no clipping, no empty panel, be it light or dark`, async () => {
+      const {page, seen} = await openPage(browser, pageOf(name), {...size, colorScheme: "light"});
+      await page.waitForTimeout(300);  // charts draw after the page has loaded
+      if (await page.locator("#scene").isVisible()) {  // drawn only when scrolled into view
+        await page.locator("#scene").scrollIntoViewIfNeeded();
+        await page.locator("#scene canvas").waitFor();
+        await page.evaluate(() => window.scrollTo(0, 0));
+      }
+      await page.locator("details").evaluateAll((all) => all.forEach((one) => { one.open = true; }));
+      await checkLayout(page, name, screen, "light");
+      await page.emulateMedia({colorScheme: "dark"});
+      await page.waitForTimeout(100);  // charts draw again
+      await checkLayout(page, name, screen, "dark");
+      assert.deepEqual(seen.errors, []);
+      await page.close();
+    });
   }
 }
 

@@ -1,4 +1,5 @@
-/* A controller that steers straight on, and in period 2 does what options.mode says. */
+/* A controller that steers straight on, and in period 2 does what options.mode says. Asked for plans, it
+ * numbers what it is to write: the inputs in steps of 0.001, the gains in steps of 0.0001. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +11,8 @@
 struct controller {
   char mode[16];
   int input_dim;
+  int state_dim;
+  int horizon;
   uint64_t seed;
 };
 
@@ -18,6 +21,8 @@ static void* create(const qsmpc_problem* problem, char* error, size_t size) {
   const char* mode = strstr(problem->options, "\"mode\":\"");
   if (mode != NULL) sscanf(mode + 8, "%15[a-z_]", made->mode);
   made->input_dim = problem->input_dim;
+  made->state_dim = problem->state_dim;
+  made->horizon = problem->horizon;
   printf("what a library prints is in the log\n");
   fflush(stdout);
   if (strcmp(made->mode, "no_start") != 0) return made;
@@ -33,6 +38,12 @@ static int32_t act(void* self, const qsmpc_situation* situation, qsmpc_answer* a
   const struct controller* controller = self;
   const char* mode = situation->period == 2 ? controller->mode : "";
   int i;
+  if (answer->plan_inputs != NULL) {
+    const int inputs = controller->horizon * controller->input_dim;
+    for (i = 0; i < inputs; ++i) answer->plan_inputs[i] = 1e-3 * i;
+    for (i = 0; i < inputs * controller->state_dim; ++i) answer->plan_gains[i] = 1e-4 * i;
+    return 0;
+  }
   if (answer->input == NULL) return 2;
   for (i = 0; i < controller->input_dim; ++i) answer->input[i] = 0.01 * (double)(controller->seed % 10);
   if (strcmp(mode, "crash") == 0) *(volatile int*)NULL = 1;

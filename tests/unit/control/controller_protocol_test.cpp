@@ -192,6 +192,10 @@ TEST_F(Answers, that_are_wrong_are_refused_with_what_was_found) {
               HasSubstr("plan.inputs of 1 stages"));
   EXPECT_THAT(refusal(R"({"plan": {"inputs": [[0, 0], [0, 7]]}})", 2),
               HasSubstr("plan.inputs[1] with b = 7"));
+  EXPECT_THAT(
+      refusal(R"({"plan": {"inputs": [[0, 0]], "gains": [[[1, 2], [3, 4]], [[1, 2], [3, 4]]]}})",
+              1),
+      HasSubstr("plan.gains [[[1,2],[3,4]],[[1,2],[3,4]]]; the gains of 1 stages"));
   EXPECT_THAT(refusal(R"({"plan": {"inputs": [[0, 0]], "gains": [[[1, 2]]]}})", 1),
               HasSubstr("plan.gains[0] [[1,2]]; 2 rows of 2 numbers"));
   EXPECT_THAT(refusal(R"({"plan": {"inputs": [[0, 0]], "status": "fine"}})", 1),

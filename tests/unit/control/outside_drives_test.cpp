@@ -132,6 +132,27 @@ TEST(OutsidePlans, are_certified_stage_by_stage_and_leave_traces_and_pages) {
   EXPECT_EQ(traces[0].steps[3].certificates[4].value, traces[1].steps[3].certificates[4].value);
 }
 
+// Two inputs, so that stages, inputs and states cannot be taken for each other.
+TEST(OutsidePlans, of_libraries_are_read_stage_by_stage) {
+  std::vector<std::string> overrides = controller_overrides(OutsideKind::kLibrary);
+  overrides.insert(overrides.end(), {"controller.plans=true", "controller.horizon=3", "risk={}",
+                                     "limit.steps=1", "plant.kind=analytic"});
+  const Trace trace = run_episode(load_scenario("bicycle_obstacles", overrides), {.seed = 3});
+  ASSERT_EQ(trace.steps.size(), 1U) << trace.fault;
+  const StepRecord& step = trace.steps[0];
+  ASSERT_EQ(step.plan_inputs.cols(), 3);
+  ASSERT_EQ(step.plan_gains.size(), 3U);
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_DOUBLE_EQ(step.plan_inputs(i, k), 1e-3 * (2 * k + i));
+      for (int j = 0; j < 6; ++j) {
+        EXPECT_DOUBLE_EQ(step.plan_gains[static_cast<std::size_t>(k)](i, j),
+                         1e-4 * ((2 * k + i) * 6 + j));
+      }
+    }
+  }
+}
+
 TEST(OutsidePlans, are_predicted_as_those_of_the_program_are) {
   const Scenario scenario = outside_scenario(OutsideKind::kExternal, {"controller.plans=true"});
   const auto model = model_of(scenario);
