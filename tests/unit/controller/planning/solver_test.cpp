@@ -91,8 +91,8 @@ TEST_P(EverySolver, returns_the_value_of_the_best_point_and_respects_the_limit) 
   }
 }
 
-// On a curved valley every solver needs more evaluations than these. With the penalty the last one is
-// kept for the result moved into the bounds, which here needs no move.
+// On a curved valley every solver needs more evaluations than these. With the penalty the last one
+// is kept for the result moved into the bounds, which here needs no move.
 TEST_P(EverySolver, uses_all_the_evaluations_that_it_may_make) {
   OcpProblem problem = boxed_bowl(VectorXd::Zero(2));
   problem.lower = VectorXd::Constant(2, -3.0);
