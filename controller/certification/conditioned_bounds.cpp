@@ -319,11 +319,14 @@ ConditionedBounds conditioned_bounds(const PredictedMotion& motion, const Unsafe
   if (!tree.has_parts()) return result;
   const LawBounds& bounds = tree.bounds();
   result.stages.assign(bounds.stages.begin(), bounds.stages.end());
-  double before = 0.0;
-  for (const double so_far : bounds.so_far) {
-    result.entries.push_back(std::max(0.0, so_far - before));
-    before = so_far;
+  // What has been unsafe by one stage has been so by the next: a bound for later stages holds for
+  // those before.
+  Eigen::VectorXd so_far = bounds.so_far;
+  for (Eigen::Index k = so_far.size() - 1; k > 0; --k) {
+    so_far[k - 1] = std::min(so_far[k - 1], so_far[k]);
   }
+  result.entries.resize(static_cast<std::size_t>(so_far.size()));
+  std::adjacent_difference(so_far.begin(), so_far.end(), result.entries.begin());
   return result;
 }
 

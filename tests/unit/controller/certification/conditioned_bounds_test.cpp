@@ -77,7 +77,9 @@ TEST(ConditionedBounds, fall_with_the_effort_and_stay_above_the_truth) {
   const UnsafeSet unsafe(safe_set);
   const SurrogateBounds plain = plain_bounds(motion, unsafe);
   const auto last = [&](CertificateEffort effort) {
-    return conditioned_bounds(motion, unsafe, plain, effort, run_in_turn).stages.back();
+    const ConditionedBounds bounds = conditioned_bounds(motion, unsafe, plain, effort, run_in_turn);
+    EXPECT_GE(*std::min_element(bounds.entries.begin(), bounds.entries.end()), 0.0);
+    return bounds.stages.back();
   };
   const double every = last(CertificateEffort::kEvery);
   const double tightest = last(CertificateEffort::kTightest);
