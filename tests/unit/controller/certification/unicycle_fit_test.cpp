@@ -37,11 +37,12 @@ Case random_case(Generator& generator) {
   return one;
 }
 
-StatisticalLinearisation fit_of(const Case& one) {
+StatisticalLinearisation fit_of(const Case& one,
+                                const models::UnicycleStructure& unicycle = kUnicycle) {
   StatisticalLinearisation fit;
   fit.residual = StageError::none(3);
   fit.closed_form = Eigen::VectorXd::Zero(3);
-  fit_unicycle(kUnicycle, one.law, one.feedback, 1, fit);
+  fit_unicycle(unicycle, one.law, one.feedback, 1, fit);
   return fit;
 }
 
@@ -111,10 +112,7 @@ TEST(UnicycleFit, without_reach_leaves_nothing) {
   one.feedback.away = kInfinity;
   models::UnicycleStructure still = kUnicycle;
   still.reach = 0.0;
-  StatisticalLinearisation fit;
-  fit.residual = StageError::none(3);
-  fit.closed_form = Eigen::VectorXd::Zero(3);
-  fit_unicycle(still, one.law, one.feedback, 1, fit);
+  const StatisticalLinearisation fit = fit_of(one, still);
   EXPECT_EQ(fit.residual.bounds.norm(), 0.0);
   EXPECT_EQ(fit.stretch.norm(), 0.0);
   EXPECT_EQ(fit.next_mean.head(2), one.law.mean.head(2));
