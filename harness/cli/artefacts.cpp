@@ -52,8 +52,17 @@ std::string limited_words(const CertifiedRisk& risk, int periods) {
   return fmt::format("{:.3g} at most, limit {:.3g}, {}", risk.certified, risk.limit, exceeded);
 }
 
+/// What the certificates refer to.
+std::string scope_words(bool has_plan, bool has_model_error) {
+  const std::string holds = has_plan ? "both hold for " : "it holds for ";
+  const std::string from = has_plan ? " from its belief" : " from the observed state";
+  if (has_model_error) return holds + "plants within model_error," + from;
+  return holds + "the planner's model" + from + (has_plan ? "; they do" : "; it does") +
+         " not cover the plant's mismatch";
+}
+
 /// Rows for the certificates, and whether they are bounds.
-std::string certificate_rows(const Summary& summary) {
+std::string certificate_rows(const Summary& summary, bool has_model_error) {
   const bool holds = summary.no_bound.empty();
   const bool has_plan = !std::isnan(summary.horizon_max);
   std::string rows = row(holds ? "P(unsafe at next step) <=" : "next step, NO BOUND",
@@ -64,10 +73,7 @@ std::string certificate_rows(const Summary& summary) {
                 fmt::format("{:.3g} at most", summary.horizon_max));
   }
   if (!holds) return rows + "  (no bound: " + summary.no_bound + ")\n";
-  return rows + (has_plan ? "  (both hold for the planner's model from its belief; they do not "
-                            "cover the plant's mismatch)\n"
-                          : "  (it holds for the model from the observed state; it does not cover "
-                            "the plant's mismatch)\n");
+  return rows + "  (" + scope_words(has_plan, has_model_error) + ")\n";
 }
 
 /// A row for each limit that is set.
@@ -222,7 +228,7 @@ std::string summary_table(const EpisodeView& view, const std::string& folder, bo
     text += row("solve time, median / p99",
                 fmt::format("{:.1f} / {:.1f} ms", summary.ocp_ms.median, summary.ocp_ms.p99));
     text += row("deadline misses", fmt::format("{}", summary.deadline_misses));
-    text += certificate_rows(summary) + risk_rows(summary);
+    text += certificate_rows(summary, trace.scenario.model_error.has_value()) + risk_rows(summary);
   }
   text += row("numbers", in_folder(folder, kSummaryFile));
   text += row("page", in_folder(folder, kPageFile));

@@ -21,21 +21,25 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::string_view kMeaning =
-    "<section class=\"card\">\n<h3>What a certificate says</h3>\n"
-    "<p>A certificate is an upper bound of the probability that the <em>model’s</em> state is "
-    "unsafe: at the next step, given the belief from which the plan was made. The certificate of a "
-    "plan is one of being unsafe at any of its stages; it holds for the plan as made, not for the "
-    "replanning at every step. Neither covers the plant’s mismatch to the model, which is measured "
-    "below.</p>\n"
-    "</section>\n";
-
-constexpr std::string_view kMeaningWithoutPlan =
-    "<section class=\"card\">\n<h3>What a certificate says</h3>\n"
-    "<p>A certificate is an upper bound of the probability that the <em>model’s</em> state is "
-    "unsafe at the next step, given what was observed when the input was chosen. This controller "
-    "makes no plan, so later steps are not covered. Nor is the plant’s mismatch to the model, "
-    "which is measured below.</p>\n</section>\n";
+/// What a certificate says: of a plan or only of the next step, for the model or for the plants
+/// within a model error.
+std::string meaning_of_certificates(bool has_plan, bool has_model_error) {
+  std::string html = fmt::format(
+      "<section class=\"card\">\n<h3>What a certificate says</h3>\n"
+      "<p>A certificate is an upper bound of the probability that the state of {} is unsafe",
+      has_model_error ? "any plant within the scenario’s <code>model_error</code>"
+                      : "the <em>model</em>");
+  html += has_plan ? ": at the next step, given the belief from which the plan was made. The "
+                     "certificate of a plan is one of being unsafe at any of its stages; it holds "
+                     "for the plan as made, not for the replanning at every step."
+                   : " at the next step, given what was observed when the input was chosen. This "
+                     "controller makes no plan, so later steps are not covered.";
+  if (!has_model_error) {
+    html += has_plan ? " Neither covers" : " Nor is";
+    html += " the plant’s mismatch to the model, which is measured below.";
+  }
+  return html + "</p>\n</section>\n";
+}
 
 constexpr std::string_view kMismatchNote =
     "<h3>Mismatch of the plant against the planner’s model</h3>\n"
@@ -175,7 +179,8 @@ std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeSce
   const controller::DecisionParts& parts = view.parts();
   const std::string head = "<h2 class=\"drive-head\">The drive</h2>\n";
   const std::string film = video(options);
-  const std::string meaning(parts.stages > 0 ? kMeaning : kMeaningWithoutPlan);
+  const std::string meaning =
+      meaning_of_certificates(parts.stages > 0, trace.scenario.model_error.has_value());
   if (trace.steps.empty()) return head + film + meaning;
   const std::string moment = fmt::format(kMoment, parts.cost ? kWhy : std::string_view());
   const bool has_moving = !controller::moving_obstacles(view.scenario().safe_set).empty();

@@ -1,6 +1,7 @@
 // Every shipped scenario on every plant of its system, for a few periods; and how often episodes of
 // the reference thesis's experiments succeed.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <ostream>
@@ -36,8 +37,8 @@ TEST_P(ShippedScenarios, run_on_every_plant_of_their_system_with_a_certificate_e
   constexpr std::size_t kSteps = 3;
   const Scenario scenario = load_scenario(GetParam(), {"limit.steps=3"});
   std::vector<std::string> plants = plants_of(scenario.model.system);
-  EXPECT_GE(plants.size(), 2U);
   if (scenario.plant.kind == "mujoco") plants.emplace_back("mujoco");
+  EXPECT_GE(plants.size(), 2U);
   for (const std::string& plant : plants) {
     SCOPED_TRACE(plant);
     const Trace trace = run_episode(with_plant(scenario, plant), {.seed = 0});
@@ -143,6 +144,25 @@ TEST(TrackLap, is_driven_on_the_road_and_within_its_limit_whatever_the_seed) {
     ASSERT_TRUE(summary.laps.has_value());
     EXPECT_EQ(summary.laps->times.size(), 1U) << seed;
     EXPECT_EQ(summary.risk.plan.exceeded, 0) << seed;
+  }
+}
+
+// The limit covers the car's difference from its model, measured on other drives than these.
+TEST(CertifiedCar, keeps_the_limit_that_includes_its_model_error) {
+  const Scenario scenario = load_scenario("certified_car");
+  ASSERT_TRUE(scenario.model_error.has_value());
+  const int seeds = by_effort(1, 2, 50);
+  for (int seed = 0; seed < seeds; ++seed) {
+    const Trace trace = run_episode(scenario, {.seed = static_cast<std::uint64_t>(seed)});
+    const EpisodeView view(trace);
+    const Summary& summary = view.summary();
+    EXPECT_EQ(summary.outcome, outcome_name(Outcome::kReached)) << seed;
+    EXPECT_FALSE(summary.collision) << seed;
+    EXPECT_EQ(summary.risk.plan.exceeded, 0) << seed;
+    // A Dubins car would be off by up to 0.1 rad.
+    for (const StepRecord& step : trace.steps) {
+      EXPECT_LT(std::abs(step.residual[2]), 0.01) << seed;
+    }
   }
 }
 

@@ -73,6 +73,17 @@ TEST(EpisodePage, says_beside_every_certificate_that_it_is_not_a_bound) {
   EXPECT_EQ(tag_problem(page), "");
 }
 
+TEST(EpisodePage, says_whether_certificates_cover_the_plant) {
+  Trace trace = testing::example_trace();
+  const std::string of_model = markup_of(episode_page(EpisodeView(trace), {}));
+  EXPECT_TRUE(contains(of_model, "that the state of the <em>model</em> is unsafe"));
+  EXPECT_TRUE(contains(of_model, "Neither covers the plant’s mismatch"));
+  trace.scenario.model_error.emplace();
+  const std::string of_plant = markup_of(episode_page(EpisodeView(trace), {}));
+  EXPECT_TRUE(contains(of_plant, "any plant within the scenario’s <code>model_error</code>"));
+  EXPECT_FALSE(contains(of_plant, "Neither covers"));
+}
+
 TEST(EpisodePage, the_tag_check_finds_what_is_wrong) {
   EXPECT_NE(testing::tag_problem("<p><b></p></b>"), "");
   EXPECT_NE(testing::tag_problem("<p>"), "");
