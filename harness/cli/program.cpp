@@ -36,6 +36,7 @@ int parse_and_run(int argc, char** argv) {
   add_export_command(app, exit_code);
   add_reproduce_command(app, exit_code);
   add_doctor_command(app, exit_code);
+  add_fit_command(app, exit_code);
   add_list_command(app, exit_code);
   add_schema_command(app, exit_code);
   add_validate_command(app, exit_code);

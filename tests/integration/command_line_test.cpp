@@ -31,7 +31,7 @@ void expect_refused(const std::vector<std::string>& arguments, const std::string
 
 TEST(CommandLine, names_a_command_that_is_not_known_and_the_nearest) {
   expect_refused({"rnu", "dubins_corridor"}, "found rnu, expected a command: run (known: ");
-  expect_refused({"foo"}, "found foo, expected a command: one of ");
+  expect_refused({"zoology"}, "found zoology, expected a command: one of ");
   expect_refused({"campaign", "sttaus", "x", "--jsn"}, "qsmpc campaign --help");
 }
 
