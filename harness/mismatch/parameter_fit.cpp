@@ -19,7 +19,7 @@
 namespace qsmpc::harness {
 namespace {
 
-// Error, in deviations, that stands for constants that the model rejects.
+// Error, in deviations, that stands for constants that the model rejects or cannot predict with.
 constexpr double kRejected = 1e6;
 // Columns of the Jacobian that are dependent to this relative precision, that of its finite
 // differences, are so.
@@ -67,9 +67,10 @@ class WeightedErrors {
   int operator()(const Eigen::VectorXd& constants, Eigen::VectorXd& values) const {
     try {
       values = (weights_.asDiagonal() * errors(constants)).reshaped();
+      if (values.allFinite()) return 0;
     } catch (const std::invalid_argument&) {  // such as a negative mass
-      values.setConstant(this->values(), kRejected);
     }
+    values.setConstant(this->values(), kRejected);
     return 0;
   }
 
@@ -192,7 +193,13 @@ ParameterFit fit_parameters(const Scenario& scenario, const std::vector<std::str
 
   Eigen::NumericalDiff<WeightedErrors, Eigen::Central> minimised(errors);
   Eigen::LevenbergMarquardt<Eigen::NumericalDiff<WeightedErrors, Eigen::Central>> solver(minimised);
-  (void)solver.minimize(constants);
+  const auto outcome = solver.minimize(constants);
+  if (outcome == Eigen::LevenbergMarquardtSpace::TooManyFunctionEvaluation ||
+      outcome == Eigen::LevenbergMarquardtSpace::ImproperInputParameters) {
+    throw InputError({.key = "--parameter",
+                      .found = "no minimum after " + std::to_string(solver.nfev) + " evaluations",
+                      .expected = "constants near those of the plant to begin with"});
+  }
 
   differentiated.df(constants, jacobian);
   check_determined(jacobian, names);

@@ -46,8 +46,8 @@ struct ParameterFit {
 /// disturbance (where that is 0: to the error's root mean square before the fit), by the method of
 /// Levenberg and Marquardt from the scenario's values.
 ///
-/// Throws InputError if a name is unknown or repeated, if there are fewer errors than constants, or
-/// if the periods do not determine a constant.
+/// Throws InputError if a name is unknown or repeated, if there are fewer errors than constants, if
+/// the periods do not determine a constant, or if no minimum is found.
 [[nodiscard]] ParameterFit fit_parameters(const Scenario& scenario,
                                           const std::vector<std::string>& names,
                                           const PlantPeriods& periods);

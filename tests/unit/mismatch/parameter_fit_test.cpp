@@ -64,6 +64,23 @@ TEST(ParameterFit, finds_the_constants_that_the_plant_has) {
   EXPECT_LT(fit.rms_after[0], 1e-12);
 }
 
+// The first step would be to a mass of about -3800 kg, which the bicycle rejects.
+TEST(ParameterFit, gets_past_constants_that_the_model_rejects) {
+  const Scenario scenario = load_scenario("bicycle_obstacles");
+  Scenario light = scenario;
+  light.model.parameters.at("mass") = 300.0;
+  constexpr int kCount = 30;
+  PlantPeriods periods{.states = Eigen::MatrixXd::Zero(6, kCount),
+                       .inputs = Eigen::MatrixXd::Zero(2, kCount)};
+  periods.states.row(3).setConstant(8.0);
+  for (int k = 0; k < kCount; ++k) periods.inputs(1, k) = 0.05 * std::sin(k);
+  models::StateBatch ends(6, kCount);
+  model_of(light)->step(models::StateBatch(periods.states), models::StateBatch(periods.inputs),
+                        ends);
+  periods.ends = ends;
+  EXPECT_NEAR(fit_parameters(scenario, {"mass"}, periods).parameters.at(0).fitted, 300.0, 1e-3);
+}
+
 TEST(ParameterFit, keeps_constants_that_are_not_named) {
   const ParameterFit fit = fit_parameters(cart(), {"drag"}, periods_of(2.0, 0.8));
   EXPECT_NEAR(fit.parameters.at(0).fitted, 0.8, 1e-6);
