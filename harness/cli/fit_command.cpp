@@ -36,22 +36,28 @@ struct Drives {
   PlantPeriods periods;
 };
 
+/// What drives must have in common, in words: their models may differ in all else.
+std::string shape_of(const Scenario& scenario) {
+  const models::SystemDescription system = system_of(scenario);
+  std::string text = "states";
+  for (const models::Coordinate& state : system.states) text += " " + state.name;
+  text += ", inputs";
+  for (const models::Coordinate& input : system.inputs) text += " " + input.name;
+  return text + fmt::format(", a period of {} s", scenario.time_step);
+}
+
 Drives read_drives(const std::vector<std::string>& folders) {
   Drives drives;
   for (const std::string& folder : folders) {
     const Trace trace = read_folder(folder);
-    if (&folder == &folders.front()) {
-      drives.scenario = trace.scenario;
-    } else if (trace.scenario.model.system != drives.scenario.model.system ||
-               trace.scenario.time_step != drives.scenario.time_step) {
-      throw InputError(
-          {.file = folder,
-           .key = "model",
-           .found = fmt::format("{} with a period of {} s", printable(trace.scenario.model.system),
-                                trace.scenario.time_step),
-           .expected =
-               fmt::format("{} with {} s, as in the first drive",
-                           printable(drives.scenario.model.system), drives.scenario.time_step)});
+    if (&folder == &folders.front()) drives.scenario = trace.scenario;
+    const std::string shape = shape_of(trace.scenario);
+    const std::string first = shape_of(drives.scenario);
+    if (shape != first) {
+      throw InputError({.file = folder,
+                        .key = "model",
+                        .found = printable(shape, 400),
+                        .expected = printable(first, 400) + ", as in the first drive"});
     }
     drives.periods.add(trace);
   }
@@ -119,7 +125,9 @@ void add_fit_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("fit", kFitHelp);
   command->footer(kFitExample);
   const auto arguments = std::make_shared<FitArguments>();
-  command->add_option("folders", arguments->folders, "folders of drives with the same model")
+  command
+      ->add_option("folders", arguments->folders,
+                   "folders of drives with the same states and inputs")
       ->required();
   command
       ->add_option("--parameter", arguments->parameters,

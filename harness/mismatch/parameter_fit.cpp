@@ -14,6 +14,7 @@
 #include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
+#include "harness/text/printable.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
@@ -105,7 +106,7 @@ void check_names(const Scenario& scenario, const std::vector<std::string>& names
     if (std::ranges::find(known, names[i]) == known.end()) {
       throw InputError(
           {.key = "--parameter",
-           .found = names[i],
+           .found = printable(names[i], 100),
            .expected = known.empty() ? "a model with constants" : expected_names(names[i], known)});
     }
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=

@@ -42,7 +42,7 @@ TEST(Fit, finds_how_the_steering_of_the_car_lags) {
   EXPECT_LT(fit["rms"]["after"][2].get<double>(), 0.1 * fit["rms"]["before"][2].get<double>());
 }
 
-TEST(Fit, refuses_unknown_constants_and_drives_of_different_models) {
+TEST(Fit, refuses_unknown_constants_and_drives_with_other_states) {
   const TemporaryFolder folder;
   drive_without_lag(folder / "drive");
   const ProcessResult unknown = run_qsmpc({"fit", folder / "drive", "--parameter", "lagg"});
@@ -55,7 +55,8 @@ TEST(Fit, refuses_unknown_constants_and_drives_of_different_models) {
   const ProcessResult mixed =
       run_qsmpc({"fit", folder / "drive", folder / "other", "--parameter", "lag"});
   EXPECT_EQ(mixed.exit_code, 2);
-  EXPECT_THAT(mixed.errors, HasSubstr("found double_integrator with a period of 0.1 s"));
+  EXPECT_THAT(mixed.errors,
+              HasSubstr("found states position velocity, inputs acceleration, a period of 0.1 s"));
   EXPECT_EQ(run_qsmpc({"fit", folder / "none", "--parameter", "lag"}).exit_code, 2);
 }
 
