@@ -107,8 +107,8 @@ void PlanEvaluator::hold_risk(const Policy& policy) {
   if (risk_) risk_->hold(gaussian_, policy);
 }
 
-void PlanEvaluator::count_entries(Plan& plan) {
-  (void)risk_->count_entries(gaussian_, plan.policy, plan.risk);
+void PlanEvaluator::accept_risk(Plan& plan) {
+  (void)risk_->accept(gaussian_, plan.policy, plan.risk);
 }
 
 double PlanEvaluator::excess_of(const Plan& plan, Policy& policy) {

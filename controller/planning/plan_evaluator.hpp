@@ -74,11 +74,11 @@ class PlanEvaluator {
   [[nodiscard]] RiskConstraint* risk() { return risk_ ? &*risk_ : nullptr; }
   /// Sets the limits of the plan made in period `period` of a drive.
   void set_limits(const RiskLimits& limits, Eigen::Index period);
-  /// How far the plan's inputs, with their present gains, exceed the limits (which must exist):
-  /// log(certificate / limit) of the limit exceeded most. policy: scratch.
+  /// How far the plan's inputs, with their present gains, exceed the aims of the limits (which must
+  /// exist): log(certificate / aim) of the aim exceeded most. policy: scratch.
   [[nodiscard]] double excess_of(const Plan& plan, Policy& policy);
-  /// Re-evaluates a plan that exceeds the limits (which must exist) by the first-entry bounds.
-  void count_entries(Plan& plan);
+  /// Counts a plan within the limits (which must exist) as kept, also if it is not within the aims.
+  void accept_risk(Plan& plan);
   /// Holds the surrogate of this policy for the current belief; does nothing without limits.
   void hold_risk(const Policy& policy);
 

@@ -123,10 +123,11 @@ const Plan& Planner::finish(PlanInProgress& plan, const Gaussian& belief,
 void Planner::settle(PlanInProgress& plan, const Gaussian& belief, const PlanRequest& request) {
   if (kept_inputs_.size() > 0) shift_inputs(Eigen::MatrixXd(kept_inputs_), kept_inputs_);
   const bool usable = !plan.failed && std::isfinite(plan.current->cost.total());
+  if (usable && !plan.late()) evaluator_.accept_risk(*plan.current);
   if (usable && !plan.current->risk.kept && !plan.late()) {
     if (kept_inputs_.size() > 0) try_tail(plan, false);
     if (!plan.current->risk.kept) choose_effort(plan);
-    evaluator_.count_entries(*plan.current);
+    evaluator_.accept_risk(*plan.current);
     if (!plan.current->risk.kept && plan.current->risk.severity > 0.0 && !errorless_) {
       rounds_.reduce_risk(plan);
     }
@@ -137,7 +138,7 @@ void Planner::settle(PlanInProgress& plan, const Gaussian& belief, const PlanReq
     if (exceeded && settings_.otherwise == RiskOtherwise::kBrake) rounds_.brake(plan);
   }
   if (errorless_) plan_without_error(plan, belief, request);
-  if (usable && !plan.late()) evaluator_.count_entries(*plan.current);
+  if (usable && !plan.late()) evaluator_.accept_risk(*plan.current);
   if (!plan.current->risk.kept) {
     if (!plan.stopped()) plan.status = SolverStatus::kRiskExceeded;
   } else {

@@ -66,6 +66,8 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
   }
   require(settings.risk.first >= 0.0 && settings.risk.stage >= 0.0 && settings.risk.plan >= 0.0,
           "risk limits must not be negative");
+  require(settings.risk_reserve >= 0.0 && settings.risk_reserve < 1.0,
+          "the reserve of risk limits must be at least 0 and below 1");
   const double effort = settings.feedback_effort.value_or(1.0);
   require(effort > 0.0 && std::isfinite(effort), "the feedback effort must be positive");
   require(settings.deadline > 0.0, "the deadline must be positive");

@@ -58,6 +58,9 @@ struct PlannerSettings {
   Penalty penalty;
   SafeSet safe_set;
   RiskLimits risk;  ///< of every plan's certificates
+  /// Share of `risk.stage` and `risk.plan` that plans leave to later ones where they can, 0 … 1
+  /// (1 excluded).
+  double risk_reserve = 0.0;
   RiskOtherwise otherwise = RiskOtherwise::kLeastRisk;
   /// Error of the model with respect to the plant; certificates then hold for the plant.
   std::optional<ModelError> model_error;

@@ -1,16 +1,33 @@
 // A closed box: an obstacle.
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "controller/regions/box_part.hpp"
 #include "controller/regions/distance_kernels.hpp"
 #include "controller/regions/penalty_kernels.hpp"
+#include "controller/regions/planar/shape_parts.hpp"
 #include "controller/regions/shapes.hpp"
 #include "controller/regions/soft_part.hpp"
 #include "controller/regions/soft_region.hpp"
 
 namespace qsmpc::controller {
 namespace {
+
+/// The points of the plane within a distance of a rectangle.
+struct RoundedRectangle {
+  PlaneAxes axes;
+  BoundedPart bounded;
+};
+
+RoundedRectangle rounded_rectangle(const Box& box, PlaneAxes axes, double radius) {
+  ConvexPart part =
+      convex_parts(PolygonShape{.corners = rectangle_corners(box, axes.x, axes.y)}).front();
+  part.radius = radius;
+  const Circle circle = circle_about(part);
+  return {.axes = axes, .bounded = {.part = std::move(part), .circle = circle}};
+}
 
 class BoxRegion final : public UnsafeRegion {
  public:
@@ -20,7 +37,12 @@ class BoxRegion final : public UnsafeRegion {
         core_intervals_(bounded_axes(core)),
         radius_(radius),
         part_(box_part(grown)),
-        intervals_(bounded_axes(grown)) {}
+        intervals_(bounded_axes(grown)) {
+    if (radius > 0.0 && core_intervals_.size() == 2 && has_four_sides()) {
+      const PlaneAxes axes{.x = core_intervals_[0].axis, .y = core_intervals_[1].axis};
+      rounded_ = rounded_rectangle(core, axes, radius);
+    }
+  }
 
   [[nodiscard]] double signed_distance(
       Eigen::Index /*stage*/, const Eigen::Ref<const Eigen::VectorXd>& point) const override {
@@ -50,11 +72,18 @@ class BoxRegion final : public UnsafeRegion {
 
   void add_probability(Eigen::Index /*stage*/, const SurrogateLaw& state,
                        RegionProbability& sum) const override {
-    add_part_probability(state, part_, sum);
+    RegionProbability bound;
+    add_part_probability(state, part_, bound);
+    if (rounded_) lower_at_corner(state, bound);
+    sum += bound;
   }
 
   void add_tail(Eigen::Index /*stage*/, const Gaussian& law, TailSum& sum) const override {
-    add_part_tail(law, part_, sum);
+    if (rounded_) {
+      add_planar_tail(law, {&rounded_->bounded, 1}, rounded_->axes, sum);
+    } else {
+      add_part_tail(law, part_, sum);
+    }
   }
 
   [[nodiscard]] double soft_probability(Eigen::Index /*stage*/,
@@ -95,11 +124,34 @@ class BoxRegion final : public UnsafeRegion {
   }
 
  private:
+  [[nodiscard]] bool has_four_sides() const {
+    return std::ranges::all_of(core_intervals_, [](const AxisInterval& interval) {
+      return std::isfinite(interval.lower) && std::isfinite(interval.upper) &&
+             interval.lower < interval.upper;
+    });
+  }
+
+  /// The grown box has sharp corners. Where the mean is nearest to one of them, most of what the law
+  /// has in the box may be in what the rounded corner lacks.
+  void lower_at_corner(const SurrogateLaw& state, RegionProbability& bound) const {
+    const bool both = state.wanted == WantedBounds::kBoth;
+    const double reached = both ? bound.markov : std::min(bound.smooth, state.useful);
+    if (reached <= (both ? kNegligiblePart : std::max(state.worthwhile, kNegligiblePart))) return;
+    const Eigen::Vector2d mean = plane_point(state.law.mean, rounded_->axes);
+    const ConvexPart& part = rounded_->bounded.part;
+    const Eigen::Vector2d outward = nearest_surface(part, mean).outward;
+    if (outward.x() == 0.0 || outward.y() == 0.0) return;
+    const RegionProbability rounded = convex_probability(state, part, rounded_->axes);
+    bound.markov = std::min(bound.markov, rounded.markov);
+    bound.smooth = std::min(bound.smooth, rounded.smooth);
+  }
+
   Box core_;
   std::vector<AxisInterval> core_intervals_;
   double radius_;
   BoxPart part_;
   std::vector<AxisInterval> intervals_;
+  std::optional<RoundedRectangle> rounded_;  ///< of four sides, if its corners are round
 };
 
 }  // namespace

@@ -11,8 +11,9 @@ namespace qsmpc::controller {
 [[nodiscard]] RegionPointer make_walls(const Box& intervals, const Growth& growth);
 
 /// A closed box, unbounded in the coordinates whose intervals are infinite. If only position is
-/// restricted, distances are to the grown box with rounded corners. In all other cases, and for all
-/// other queries, it grows into a box that contains the rounded one.
+/// restricted, distances, probabilities (C3, C4) and tails are those of the grown box with rounded
+/// corners. In all other cases, and for all other queries, it grows into a box that contains the
+/// rounded one.
 [[nodiscard]] RegionPointer make_box(const Box& intervals, const Growth& growth);
 
 }  // namespace qsmpc::controller

@@ -67,6 +67,7 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
                       .length = penalty.length};
   settings.safe_set = scenario.safe_set;
   settings.risk = {.stage = scenario.risk.stage, .plan = scenario.risk.plan};
+  settings.risk_reserve = scenario.risk.reserve;
   settings.otherwise = controller::risk_otherwise(scenario.risk.otherwise);
   settings.model_error = scenario.model_error;
   settings.bounds = {.lower = controller.input_lower, .upper = controller.input_upper};

@@ -113,6 +113,8 @@ struct Scenario {
     double stage = std::numeric_limits<double>::infinity();    ///< at each stage of a plan
     double plan = std::numeric_limits<double>::infinity();     ///< at any stage of a plan
     double mission = std::numeric_limits<double>::infinity();  ///< over the whole drive
+    /// Share of the limits `stage` and `plan` that plans leave to later ones where they can.
+    double reserve = 0.75;
     std::string otherwise = "least_risk";  ///< a fallback of risk_otherwise_entries()
 
     [[nodiscard]] bool any() const {

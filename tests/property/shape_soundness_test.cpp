@@ -22,7 +22,7 @@ using namespace testing;
 const int kPaths = by_effort(10000, 10000, 100000);
 
 /// For each kind of shape.
-int problem_count() { return by_effort(48, 48, 1680); }
+int problem_count() { return by_effort(36, 36, 1680); }
 
 /// Clopper–Pearson: the probability that the truth is below this in any of all comparisons together
 /// is at most 1e-3; there are at most 7 kinds of bounds and 8 stages per problem, with static and

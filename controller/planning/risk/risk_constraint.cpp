@@ -26,6 +26,20 @@ double sum_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
+/// log(certificate / limit) of the limit that is exceeded most. plan: the certificate of any stage.
+double excess_over(const RiskLimits& limits, const std::vector<double>& stages, double plan) {
+  double excess = kLeastLog;
+  if (std::isfinite(limits.first)) {
+    excess = std::max(excess, log_ratio(stages.front(), limits.first));
+  }
+  if (std::isfinite(limits.stage)) {
+    const double most = *std::max_element(stages.begin(), stages.end());
+    excess = std::max(excess, log_ratio(most, limits.stage));
+  }
+  if (std::isfinite(limits.plan)) excess = std::max(excess, log_ratio(plan, limits.plan));
+  return excess;
+}
+
 void take_stages(const SurrogateBounds& bounds, std::vector<double>& out) {
   out.clear();
   for (const RegionProbability& stage : bounds.bounds) {
@@ -50,6 +64,12 @@ void RiskConstraint::set_limits(const RiskLimits& limits, Eigen::Index period) {
   for (double* limit : {&limits_.first, &limits_.stage, &limits_.plan}) {
     if (*limit >= 1.0) *limit = kInfinity;
   }
+  const auto aim = [&](double limit, double set) {
+    return std::isfinite(limit) ? std::min(limit, (1.0 - settings_.risk_reserve) * set) : limit;
+  };
+  aims_ = {.first = limits_.first,
+           .stage = aim(limits_.stage, settings_.risk.stage),
+           .plan = aim(limits_.plan, settings_.risk.plan)};
   period_ = period;
   bounds_.forget();
   Eigen::Index count = 0;
@@ -103,40 +123,27 @@ double RiskConstraint::excess(const Gaussian& belief, const Policy& policy) {
   return excess(stages);
 }
 
-bool RiskConstraint::count_entries(const Gaussian& belief, const Policy& policy, PlanRisk& risk) {
-  if (risk.kept || !std::isfinite(limits_.plan) || !(risk.plan > limits_.plan)) return risk.kept;
+bool RiskConstraint::accept(const Gaussian& belief, const Policy& policy, PlanRisk& risk) {
+  if (risk.kept) return true;
   if (risk.counted) return false;
   risk.counted = true;
-  const double entries = sum_of(first_entry_bounds(unsafe_, bounds_.of(motion_of(belief, policy))));
-  const double certified = excess(risk.stages, entries);
+  double plan = sum_of(risk.stages);
+  if (plan > limits_.plan) {
+    plan = std::min(plan, sum_of(first_entry_bounds(unsafe_, bounds_.of(motion_of(belief, policy)))));
+  }
+  const double certified = excess_over(limits_, risk.stages, plan);
   if (!(certified <= 0.0)) return false;
-  risk.plan = entries;
+  risk.plan = std::min(1.0, plan);
   risk.kept = true;
   risk.severity = certified;
   return true;
 }
 
 double RiskConstraint::excess(const std::vector<double>& stages) const {
-  return excess(stages, sum_of(stages));
+  return excess_over(aims_, stages, sum_of(stages));
 }
 
-/// plan: the certificate of any stage.
-double RiskConstraint::excess(const std::vector<double>& stages, double plan) const {
-  double excess = kLeastLog;
-  if (std::isfinite(limits_.first)) {
-    excess = std::max(excess, log_ratio(stages.front(), limits_.first));
-  }
-  if (std::isfinite(limits_.stage)) {
-    const double most = *std::max_element(stages.begin(), stages.end());
-    excess = std::max(excess, log_ratio(most, limits_.stage));
-  }
-  if (std::isfinite(limits_.plan)) {
-    excess = std::max(excess, log_ratio(plan, limits_.plan));
-  }
-  return excess;
-}
-
-/// The certificates, not the model, decide whether the limits are kept.
+/// The certificates, not the model, decide whether the aims are kept.
 void RiskConstraint::judge(PlanRisk& out) const {
   const double certified = excess(out.stages);
   out.kept = certified <= 0.0;
@@ -160,11 +167,11 @@ StageRows RiskConstraint::stage_rows() const {
 const Eigen::VectorXd& RiskConstraint::values(const Eigen::VectorXd& z) {
   const Eigen::VectorXd& risks = model_.risks(z);
   Eigen::Index j = 0;
-  if (std::isfinite(limits_.first)) values_[j++] = log_ratio(risks[0], limits_.first) + margin_;
+  if (std::isfinite(limits_.first)) values_[j++] = log_ratio(risks[0], aims_.first) + margin_;
   if (std::isfinite(limits_.stage)) {
-    for (const double risk : risks) values_[j++] = log_ratio(risk, limits_.stage) + margin_;
+    for (const double risk : risks) values_[j++] = log_ratio(risk, aims_.stage) + margin_;
   }
-  if (std::isfinite(limits_.plan)) values_[j++] = log_ratio(risks.sum(), limits_.plan) + margin_;
+  if (std::isfinite(limits_.plan)) values_[j++] = log_ratio(risks.sum(), aims_.plan) + margin_;
   return values_;
 }
 

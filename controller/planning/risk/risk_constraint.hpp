@@ -1,6 +1,6 @@
 // The limits of a plan's risk as constraints of its decision, on a logarithmic scale: c ≤ 0 where
-// log(risk) is at most log(limit) less a margin. Between certifications the risk is that of
-// RiskModel.
+// log(risk) is at most log(aim) less a margin. Aims are the limits less the reserve that later plans
+// may need (docs/theory/planning.md, "Risk"). Between certifications the risk is that of RiskModel.
 #pragma once
 
 #include <chrono>
@@ -30,13 +30,14 @@ class RiskConstraint final : public SummedConstraints {
   /// To be called before each plan: the laws of moving obstacles may have changed.
   void begin() { bounds_.forget(); }
 
-  /// Certifies `policy` from `belief`, and holds its calibrated surrogate.
+  /// Certifies `policy` from `belief`, and holds its calibrated surrogate. `out.kept` says whether
+  /// it is within the aims.
   void certify(const Gaussian& belief, const Policy& policy, PlanRisk& out);
-  /// If `risk`, certified for `policy`, exceeds its limits by the sum over the stages: re-evaluates
-  /// it by the tighter first-entry bounds (first_entry.hpp). Returns whether it is within its
-  /// limits.
-  bool count_entries(const Gaussian& belief, const Policy& policy, PlanRisk& risk);
-  /// log(certificate / limit) of the limit that `policy` exceeds most; does not change the held
+  /// Whether `risk`, certified for `policy`, is within the limits, if not within the aims: by the
+  /// sum over the stages or by the tighter first-entry bounds (first_entry.hpp). If so, it then
+  /// counts as kept.
+  bool accept(const Gaussian& belief, const Policy& policy, PlanRisk& risk);
+  /// log(certificate / aim) of the aim that `policy` exceeds most; does not change the held
   /// surrogate.
   [[nodiscard]] double excess(const Gaussian& belief, const Policy& policy);
   /// The same for the certificates of a policy (stages 1 … horizon).
@@ -47,7 +48,7 @@ class RiskConstraint final : public SummedConstraints {
   /// shifted by one stage; else they are forgotten.
   void start(bool warm);
 
-  /// By how much the limits are tightened, in log risk.
+  /// By how much the aims are tightened, in log risk.
   [[nodiscard]] double margin() const { return margin_; }
   void set_margin(double margin) { margin_ = margin; }
 
@@ -66,7 +67,6 @@ class RiskConstraint final : public SummedConstraints {
 
  private:
   [[nodiscard]] PredictedMotion motion_of(const Gaussian& belief, const Policy& policy) const;
-  [[nodiscard]] double excess(const std::vector<double>& stages, double plan) const;
   void judge(PlanRisk& out) const;
 
   const models::Dynamics& dynamics_;
@@ -75,6 +75,7 @@ class RiskConstraint final : public SummedConstraints {
   RecentBounds bounds_;
   RiskModel model_;
   RiskLimits limits_;
+  RiskLimits aims_;  ///< finite where the limits are
   Eigen::Index period_ = 0;
   double margin_ = 0.0;
   Prediction no_particles_;  // surrogates need none

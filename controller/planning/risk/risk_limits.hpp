@@ -43,9 +43,11 @@ struct RiskOtherwiseEntry {
 struct PlanRisk {
   std::vector<double> stages;  ///< of stages 1 … horizon; empty where there are no limits
   double plan = 1.0;           ///< of any stage: their sum or a lower bound in its place, at most 1
-  bool counted = false;        ///< whether the bound of first entries was tried
-  bool kept = true;            ///< whether the certificates keep all limits
-  /// log(certificate / limit) of the limit exceeded most, counting only what the plan can change;
+  bool counted = false;        ///< whether the limits were tried themselves, not only the aims
+  /// Whether the certificates keep all limits: during the optimisation the aims, which leave some
+  /// of each limit in reserve; of a finished plan the limits themselves.
+  bool kept = true;
+  /// log(certificate / aim) of the aim exceeded most, counting only what the plan can change;
   /// −infinity without limits. Deep inside the unsafe set, where certificates are 1, it measures
   /// the depth, so that plans remain comparable; an uninformative certificate, far from everything
   /// unsafe, is replaced by the surrogate's own probability.

@@ -1,6 +1,7 @@
 #include "controller/regions/planar/shape_parts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -206,6 +207,20 @@ Eigen::Matrix2d uncertain(Eigen::Matrix2d covariance, double largest) {
   const double most = (1.0 - 1e-12) * std::sqrt(covariance(0, 0) * covariance(1, 1));
   covariance(0, 1) = covariance(1, 0) = std::clamp(covariance(0, 1), -most, most);
   return covariance;
+}
+
+void add_planar_tail(const Gaussian& law, std::span<const BoundedPart> parts, PlaneAxes axes,
+                     TailSum& sum) {
+  const Eigen::Vector2d mean = plane_point(law.mean, axes);
+  const Eigen::Matrix2d covariance =
+      uncertain(plane_covariance(law.covariance, axes), law.covariance.diagonal().maxCoeff());
+  const double reach = kNoTail * std::sqrt(covariance.trace());
+  const std::array<Eigen::Index, 2> plane = {axes.x, axes.y};
+  for (const BoundedPart& one : parts) {
+    if (is_beyond(one.circle, mean, reach)) continue;
+    const PlanarSeparation apart = separation(one.part, mean, covariance);
+    sum.add(apart.z, plane, std::array<double, 2>{apart.slope.x(), apart.slope.y()});
+  }
 }
 
 Outline outline_in(const Eigen::Matrix2Xd& outline, PlaneAxes axes, Eigen::Index x,

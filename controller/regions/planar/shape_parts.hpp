@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -121,6 +122,10 @@ class SoftShape final : public SoftRegion {
 
 /// The covariance with its variances raised to at least that threshold.
 [[nodiscard]] Eigen::Matrix2d uncertain(Eigen::Matrix2d covariance, double largest);
+
+/// Adds the tails of the law in each of the parts to `sum`, as UnsafeRegion::add_tail does.
+void add_planar_tail(const Gaussian& law, std::span<const BoundedPart> parts, PlaneAxes axes,
+                     TailSum& sum);
 
 /// An outline given in the plane of `axes`, shown in the plane of state coordinates x and y: itself
 /// if these are `axes`, otherwise the rectangle of its extent.

@@ -1,7 +1,6 @@
 #include "controller/regions/planar/shape_region.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "controller/regions/planar/shape_parts.hpp"
@@ -42,16 +41,7 @@ class ShapeRegion final : public UnsafeRegion {
   }
 
   void add_tail(Eigen::Index /*stage*/, const Gaussian& law, TailSum& sum) const override {
-    const Eigen::Vector2d mean = plane_point(law.mean, axes_);
-    const Eigen::Matrix2d covariance =
-        uncertain(plane_covariance(law.covariance, axes_), law.covariance.diagonal().maxCoeff());
-    const double reach = kNoTail * std::sqrt(covariance.trace());
-    const std::array<Eigen::Index, 2> plane = {axes_.x, axes_.y};
-    for (const BoundedPart& one : parts_.all()) {
-      if (is_beyond(one.circle, mean, reach)) continue;
-      const PlanarSeparation apart = separation(one.part, mean, covariance);
-      sum.add(apart.z, plane, std::array<double, 2>{apart.slope.x(), apart.slope.y()});
-    }
+    add_planar_tail(law, parts_.all(), axes_, sum);
   }
 
   [[nodiscard]] double soft_probability(Eigen::Index /*stage*/,

@@ -9,6 +9,7 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr NumberRange kProbability{.least = 0.0, .most = 1.0};
+constexpr NumberRange kShare{.least = 0.0, .most = 0.99};
 
 void check_otherwise(const ScenarioReading& reading, Section& section) {
   if (reading.scenario.risk.otherwise == "model" && !reading.scenario.model_error) {
@@ -53,6 +54,12 @@ ScenarioKey risk_key() {
                    "mission", "the same for the whole drive",
                    [](Scenario& scenario) -> double& { return scenario.risk.mission; },
                    [](const Scenario& scenario) { return std::isfinite(scenario.risk.mission); }),
+               {.about = {.name = "reserve",
+                          .values = {NumberValue{kShare}},
+                          .words = "share of the limits `stage` and `plan` that plans leave to "
+                                   "later ones where they can",
+                          .see = "[below](#risk)"},
+                .member = [](Scenario& scenario) -> double& { return scenario.risk.reserve; }},
                {.about = {.name = "otherwise",
                           .values = {NameValue{risk_otherwise_names()}},
                           .words = "what to do if no plan within the limits is found: {names}",

@@ -11,13 +11,18 @@
 
 #include "models/dynamics/bicycle.hpp"
 #include "models/random/random_numbers.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
 namespace qsmpc::harness {
 namespace wheeled_plants_test {
 
+using testing::by_effort;
+
 constexpr double kPeriod = 0.1;  // s
-constexpr int kMinute = 600;     // periods
+
+/// 20 seconds of driving, a minute with --slow.
+int period_count() { return by_effort(50, 200, 600); }
 
 double uniform(std::uint64_t seed, int period, Eigen::Index which, double lower, double upper) {
   const Eigen::VectorXd values =
@@ -36,7 +41,7 @@ double uprightness(const MotionSample& sample) {
 /// Parameters: the simulator's time step (s) and the speed (m/s).
 class SmallCar : public ::testing::TestWithParam<std::tuple<double, double>> {};
 
-TEST_P(SmallCar, is_stable_for_a_minute_of_random_inputs) {
+TEST_P(SmallCar, is_stable_under_random_inputs) {
   const auto [time_step, speed] = GetParam();
   MujocoPlantSetup setup = shipped_setup("dubins", "dubins_car.xml");
   setup.parameters["speed"] = speed;
@@ -44,7 +49,7 @@ TEST_P(SmallCar, is_stable_for_a_minute_of_random_inputs) {
   const auto car = make_mujoco_plant(setup);
   const MotionSample start = car->reset(Eigen::Vector3d(0.0, 0.0, 0.0));
   Eigen::VectorXd before = car->state();
-  for (int k = 0; k < kMinute; ++k) {
+  for (int k = 0; k < period_count(); ++k) {
     const Eigen::VectorXd input = Eigen::VectorXd::Constant(1, uniform(1, k, 0, -2.0, 2.0));
     const PlantStep step = car->advance(input, Eigen::Vector3d::Zero());
     ASSERT_FALSE(step.fault.has_value()) << *step.fault;
@@ -73,7 +78,7 @@ double kinetic_energy(const models::ParameterMap& constants, const Eigen::Vector
 /// Parameters: as above. The acceleration is random about the value that holds the speed.
 class FullSizeCar : public ::testing::TestWithParam<std::tuple<double, double>> {};
 
-TEST_P(FullSizeCar, is_stable_for_a_minute_of_random_inputs) {
+TEST_P(FullSizeCar, is_stable_under_random_inputs) {
   const auto [time_step, speed] = GetParam();
   MujocoPlantSetup setup = shipped_setup("bicycle", "bicycle_car.xml");
   setup.time_step = time_step;
@@ -81,7 +86,7 @@ TEST_P(FullSizeCar, is_stable_for_a_minute_of_random_inputs) {
   Eigen::VectorXd state(6);
   state << 0.0, 0.0, 0.0, speed, 0.0, 0.0;
   const MotionSample start = car->reset(state);
-  for (int k = 0; k < kMinute; ++k) {
+  for (int k = 0; k < period_count(); ++k) {
     const double forward = car->state()[models::Bicycle::kLongitudinalSpeed];
     const double acceleration =
         std::clamp(2.0 * (speed - forward) + uniform(2, k, 0, -2.0, 2.0), -5.0, 2.0);

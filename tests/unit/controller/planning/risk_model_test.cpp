@@ -6,6 +6,8 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -262,7 +264,7 @@ TEST(RiskConstraint, counts_once_what_stays_unsafe_where_the_sum_exceeds_the_lim
   constraint.certify(belief, policy, risk);
   ASSERT_FALSE(risk.kept);
   EXPECT_EQ(risk.plan, by_sum.plan);
-  EXPECT_TRUE(constraint.count_entries(belief, policy, risk));
+  EXPECT_TRUE(constraint.accept(belief, policy, risk));
   EXPECT_TRUE(risk.kept);
   EXPECT_LE(risk.severity, 0.0);
   EXPECT_LT(risk.plan, 0.5 * by_sum.plan);
@@ -274,10 +276,59 @@ TEST(RiskConstraint, counts_once_what_stays_unsafe_where_the_sum_exceeds_the_lim
     constraint.set_limits(limits, 0);
     PlanRisk exceeded;
     constraint.certify(belief, policy, exceeded);
-    EXPECT_FALSE(constraint.count_entries(belief, policy, exceeded));
+    EXPECT_FALSE(constraint.accept(belief, policy, exceeded));
     EXPECT_FALSE(exceeded.kept);
     EXPECT_EQ(exceeded.plan, by_sum.plan);
   }
+}
+
+// Half of the limit is the aim; what is within the limit is accepted all the same.
+TEST(RiskConstraint, leaves_a_reserve_that_a_plan_may_use) {
+  const auto car = dubins_car();
+  PlannerSettings settings = block_settings();
+  settings.safe_set = unbounded_safe_set(3);
+  settings.safe_set.bounds.upper[1] = 0.6;  // beside the path
+  settings.risk = {.stage = 0.9, .plan = 0.9};
+  settings.risk_reserve = 0.5;
+  RiskConstraint constraint(*car, settings);
+  const Gaussian belief{.mean = Eigen::Vector3d::Zero(),
+                        .covariance = Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
+  Policy policy{.inputs = Eigen::MatrixXd::Zero(1, settings.horizon),
+                .states = {},
+                .gains = {},
+                .bounds = settings.bounds};
+  policy.states = nominal_states(*car, belief.mean, policy.inputs);
+  policy.gains.assign(settings.horizon, Eigen::MatrixXd::Zero(1, 3));
+  PlanRisk risk;
+  constraint.certify(belief, policy, risk);
+  const double plan = risk.plan;
+  const auto judged = [&](const RiskLimits& limits, double reserve) {
+    PlannerSettings set = settings;
+    set.risk = limits;
+    set.risk_reserve = reserve;
+    RiskConstraint judge(*car, set);
+    PlanRisk out;
+    judge.certify(belief, policy, out);
+    const bool aimed = out.kept;
+    return std::pair(aimed, judge.accept(belief, policy, out));
+  };
+  using Pair = std::pair<bool, bool>;
+  const double stage = *std::max_element(risk.stages.begin(), risk.stages.end());
+  ASSERT_GT(stage, 1e-4);
+  ASSERT_LT(plan, 0.4);
+  EXPECT_EQ(judged({.plan = 1.9 * plan}, 0.5), Pair(false, true));
+  EXPECT_EQ(judged({.plan = 1.9 * plan}, 0.0), Pair(true, true));
+  EXPECT_EQ(judged({.plan = 2.1 * plan}, 0.5), Pair(true, true));
+  EXPECT_EQ(judged({.stage = 1.9 * stage}, 0.5), Pair(false, true));
+  EXPECT_EQ(judged({.stage = 2.1 * stage}, 0.5), Pair(true, true));
+  EXPECT_EQ(judged({.stage = 0.9 * stage}, 0.5), Pair(false, false));
+  // The next step's limit, of a mission's budget, has no reserve; nor has a limit of 1.
+  EXPECT_EQ(judged({.first = 1.1 * risk.stages.front()}, 0.5), Pair(true, true));
+  EXPECT_EQ(judged({.plan = 1.0}, 0.5), Pair(true, true));
+  // Limits of a single plan are kept as they are, unless they are above the aim.
+  constraint.set_limits({.stage = 1.1 * stage, .plan = 1.1 * plan}, 0);
+  constraint.certify(belief, policy, risk);
+  EXPECT_TRUE(risk.kept);
 }
 
 }  // namespace risk_model_test

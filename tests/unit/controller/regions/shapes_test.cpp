@@ -2,6 +2,7 @@
 // simulation.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -14,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/regions/planar/shape_region.hpp"
+#include "controller/regions/shapes.hpp"
 #include "controller/regions/unsafe_set.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
@@ -87,6 +89,27 @@ void for_every_planar_shape(const Check& check, bool convex_alone = false) {
     if (convex_alone) continue;
     SCOPED_TRACE("corner " + std::to_string(repetition));
     check(*make_shape(random_corner(generator), growth), generator);
+  }
+}
+
+/// A rectangle in the plane of the first two of three coordinates.
+Box rectangle(const Eigen::Vector2d& lower, const Eigen::Vector2d& upper) {
+  return {.lower = Eigen::Vector3d(lower.x(), lower.y(), -kInfinity),
+          .upper = Eigen::Vector3d(upper.x(), upper.y(), kInfinity)};
+}
+
+/// Calls `check` with rectangles that have round corners, and some with sides but no corners.
+template <class Check>
+void for_every_grown_rectangle(const Check& check) {
+  Generator generator(79);
+  for (int repetition = 0; repetition < 40; ++repetition) {
+    SCOPED_TRACE("grown rectangle " + std::to_string(repetition));
+    const Eigen::Vector2d lower = random_place(generator);
+    const Eigen::Vector2d size(uniform(generator, 0.1, 0.8), uniform(generator, 0.1, 0.8));
+    Box box = rectangle(lower, lower + size);
+    if (repetition % 8 == 0) box.upper[0] = kInfinity;
+    const double radius = uniform(generator, 0.05, 0.5);
+    check(*make_box(box, {.radius = radius, .x = 0, .y = 1}), generator);
   }
 }
 
@@ -259,7 +282,7 @@ TEST(Shapes, soft_probabilities_are_not_below_the_simulated) {
 TEST(Shapes, probabilities_with_an_error_are_not_below_the_simulated) {
   constexpr int kSamples = 4000;
   static constexpr double kError = 0.05;
-  for_every_shape([](const UnsafeRegion& region, Generator& generator) {
+  const auto check = [](const UnsafeRegion& region, Generator& generator) {
     const Gaussian law{.mean = random_matrix(generator, 3, 1, 1.2),
                        .covariance = random_covariance(generator, false)};
     const Eigen::VectorXd error = Eigen::VectorXd::Constant(3, kError);
@@ -293,14 +316,74 @@ TEST(Shapes, probabilities_with_an_error_are_not_below_the_simulated) {
     }
     const double simulated = static_cast<double>(unsafe) / kSamples;
     EXPECT_GE(sum.smooth - 0.125, simulated - 5.0 * std::sqrt(0.25 / kSamples));
-  });
+  };
+  for_every_shape(check);
+  for_every_grown_rectangle(check);
+}
+
+// Grown by a disc, a rectangle has round corners: near one of them, bounds are those of the same
+// rectangle as a shape, and far below those of the sharp corner.
+TEST(Shapes, bounds_near_a_corner_are_those_of_the_round_one) {
+  constexpr double kRadius = 0.5;
+  const Eigen::Vector2d lower(-1.0, -0.5);
+  const Eigen::Vector2d upper(0.0, 0.0);
+  const RegionPointer round =
+      make_box(rectangle(lower, upper), {.radius = kRadius, .x = 0, .y = 1});
+  const RegionPointer sharp = make_box(
+      rectangle(lower.array() - kRadius, upper.array() + kRadius), {.x = 0, .y = 1});
+  const RegionPointer shape =
+      make_shape(TurnedBoxShape{.centre = 0.5 * (lower + upper), .size = upper - lower},
+                 {.radius = kRadius, .x = 0, .y = 1});
+  const Eigen::VectorXd error = Eigen::Vector3d::Constant(0.002);
+  HigherNorms higher;
+  higher.fill(error);
+  const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
+      [](const std::vector<Eigen::Index>& /*axes*/) -> Eigen::MatrixXd {
+    return 4e-4 * Eigen::MatrixXd::Identity(3, 3);
+  };
+  // On the diagonal of each corner, 5 cm away from the round one and inside the sharp one.
+  const double away = (kRadius + 0.05) / std::numbers::sqrt2;
+  for (const double x : {lower.x() - away, upper.x() + away}) {
+    for (const double y : {lower.y() - away, upper.y() + away}) {
+      const Gaussian law{.mean = Eigen::Vector3d(x, y, 0.3),
+                         .covariance = 4e-4 * Eigen::Matrix3d::Identity()};
+      const auto bound_of = [&](const UnsafeRegion& region, WantedBounds wanted) {
+        RegionProbability sum;
+        region.add_probability(kStage,
+                               {.law = law,
+                                .error = error,
+                                .higher = higher,
+                                .smoothing = smoothing,
+                                .wanted = wanted},
+                               sum);
+        return sum;
+      };
+      for (const WantedBounds wanted : {WantedBounds::kBoth, WantedBounds::kLeast}) {
+        const RegionProbability bound = bound_of(*round, wanted);
+        const RegionProbability same = bound_of(*shape, wanted);
+        EXPECT_NEAR(bound.smooth, same.smooth, 1e-12);
+        EXPECT_NEAR(bound.markov, same.markov, 1e-12);
+        EXPECT_GT(bound_of(*sharp, wanted).smooth, 0.9);
+        EXPECT_LT(bound.smooth, 0.03);
+        // The mean is 2.5 deviations away from the tangent at the nearest point.
+        EXPECT_GT(bound.smooth, 0.004);
+      }
+      TailSum tail;
+      tail.clear(3);
+      round->add_tail(kStage, law, tail);
+      TailSum tail_of_shape;
+      tail_of_shape.clear(3);
+      shape->add_tail(kStage, law, tail_of_shape);
+      EXPECT_NEAR(tail.value(), tail_of_shape.value(), 1e-12);
+    }
+  }
 }
 
 // The tails are smooth surrogates: at least the probability, and with correct derivatives.
 TEST(Shapes, tails_hold_the_probability_and_have_their_derivatives) {
   constexpr int kSamples = 4000;
   int inside = 0;
-  for_every_shape([&](const UnsafeRegion& region, Generator& generator) {
+  const auto check = [&](const UnsafeRegion& region, Generator& generator) {
     for (const bool diagonal : {true, false}) {
       Gaussian law{.mean = random_matrix(generator, 3, 1, 1.3),
                    .covariance = random_covariance(generator, diagonal)};
@@ -344,7 +427,9 @@ TEST(Shapes, tails_hold_the_probability_and_have_their_derivatives) {
       const double simulated = static_cast<double>(unsafe) / kSamples;
       EXPECT_GE(sum.value(), simulated - 5.0 * std::sqrt(0.25 / kSamples));
     }
-  });
+  };
+  for_every_shape(check);
+  for_every_grown_rectangle(check);
   EXPECT_GT(inside, 5);
 }
 
