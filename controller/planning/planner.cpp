@@ -245,6 +245,7 @@ const Plan& Planner::price(const Gaussian& belief, const Plan& plan,
   prescribed_.policy = plan.policy;
   prescribed_.gain_change = plan.gain_change;
   evaluator_.predict_and_evaluate(prescribed_);
+  if (evaluator_.risk() != nullptr) evaluator_.accept_risk(prescribed_);
   stopwatch.add_to(prescribed_.timing.propagate);
   return prescribed_;
 }
