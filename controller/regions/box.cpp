@@ -131,8 +131,8 @@ class BoxRegion final : public UnsafeRegion {
     });
   }
 
-  /// The grown box has sharp corners. Where the mean is nearest to one of them, most of what the law
-  /// has in the box may be in what the rounded corner lacks.
+  /// The grown box has sharp corners. Where the mean is nearest to one of them, most of what the
+  /// law has in the box may be in what the rounded corner lacks.
   void lower_at_corner(const SurrogateLaw& state, RegionProbability& bound) const {
     const bool both = state.wanted == WantedBounds::kBoth;
     const double reached = both ? bound.markov : std::min(bound.smooth, state.useful);

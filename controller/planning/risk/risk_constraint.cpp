@@ -129,7 +129,8 @@ bool RiskConstraint::accept(const Gaussian& belief, const Policy& policy, PlanRi
   risk.counted = true;
   double plan = sum_of(risk.stages);
   if (plan > limits_.plan) {
-    plan = std::min(plan, sum_of(first_entry_bounds(unsafe_, bounds_.of(motion_of(belief, policy)))));
+    plan =
+        std::min(plan, sum_of(first_entry_bounds(unsafe_, bounds_.of(motion_of(belief, policy)))));
   }
   const double certified = excess_over(limits_, risk.stages, plan);
   if (!(certified <= 0.0)) return false;

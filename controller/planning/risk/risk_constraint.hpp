@@ -1,6 +1,7 @@
 // The limits of a plan's risk as constraints of its decision, on a logarithmic scale: c ≤ 0 where
-// log(risk) is at most log(aim) less a margin. Aims are the limits less the reserve that later plans
-// may need (docs/theory/planning.md, "Risk"). Between certifications the risk is that of RiskModel.
+// log(risk) is at most log(aim) less a margin. Aims are the limits less the reserve that later
+// plans may need (docs/theory/planning.md, "Risk"). Between certifications the risk is that of
+// RiskModel.
 #pragma once
 
 #include <chrono>

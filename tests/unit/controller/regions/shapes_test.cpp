@@ -1,5 +1,7 @@
 // Every shape of the table: distances, penalties and probabilities compared with plain searches and
 // simulation.
+#include "controller/regions/shapes.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -15,7 +17,6 @@
 #include <gtest/gtest.h>
 
 #include "controller/regions/planar/shape_region.hpp"
-#include "controller/regions/shapes.hpp"
 #include "controller/regions/unsafe_set.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
@@ -329,8 +330,8 @@ TEST(Shapes, bounds_near_a_corner_are_those_of_the_round_one) {
   const Eigen::Vector2d upper(0.0, 0.0);
   const RegionPointer round =
       make_box(rectangle(lower, upper), {.radius = kRadius, .x = 0, .y = 1});
-  const RegionPointer sharp = make_box(
-      rectangle(lower.array() - kRadius, upper.array() + kRadius), {.x = 0, .y = 1});
+  const RegionPointer sharp =
+      make_box(rectangle(lower.array() - kRadius, upper.array() + kRadius), {.x = 0, .y = 1});
   const RegionPointer shape =
       make_shape(TurnedBoxShape{.centre = 0.5 * (lower + upper), .size = upper - lower},
                  {.radius = kRadius, .x = 0, .y = 1});
