@@ -20,8 +20,8 @@ Box rectangle(const Eigen::Vector2d& lower, const Eigen::Vector2d& upper) {
           .upper = Eigen::Vector3d(upper.x(), upper.y(), kInfinity)};
 }
 
-// Near a corner, bounds are those of the same rectangle as a shape, and far below those of the sharp
-// corner.
+// Near a corner, bounds are those of the same rectangle as a shape, and far below those of the
+// sharp corner.
 TEST(GrownRectangle, bounds_near_a_corner_are_those_of_the_round_one) {
   constexpr double kRadius = 0.5;
   const Eigen::Vector2d lower(-1.0, -0.5);
