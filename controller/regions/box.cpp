@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "controller/regions/box_part.hpp"
 #include "controller/regions/distance_kernels.hpp"
@@ -15,20 +14,6 @@
 namespace qsmpc::controller {
 namespace {
 
-/// The points of the plane within a distance of a rectangle.
-struct RoundedRectangle {
-  PlaneAxes axes;
-  BoundedPart bounded;
-};
-
-RoundedRectangle rounded_rectangle(const Box& box, PlaneAxes axes, double radius) {
-  ConvexPart part =
-      convex_parts(PolygonShape{.corners = rectangle_corners(box, axes.x, axes.y)}).front();
-  part.radius = radius;
-  const Circle circle = circle_about(part);
-  return {.axes = axes, .bounded = {.part = std::move(part), .circle = circle}};
-}
-
 class BoxRegion final : public UnsafeRegion {
  public:
   /// `grown` contains every point nearer than `radius` to `core`.
@@ -39,8 +24,8 @@ class BoxRegion final : public UnsafeRegion {
         part_(box_part(grown)),
         intervals_(bounded_axes(grown)) {
     if (radius > 0.0 && core_intervals_.size() == 2 && has_four_sides()) {
-      const PlaneAxes axes{.x = core_intervals_[0].axis, .y = core_intervals_[1].axis};
-      rounded_ = rounded_rectangle(core, axes, radius);
+      axes_ = {.x = core_intervals_[0].axis, .y = core_intervals_[1].axis};
+      rounded_.emplace(PolygonShape{.corners = rectangle_corners(core, axes_.x, axes_.y)}, radius);
     }
   }
 
@@ -80,7 +65,7 @@ class BoxRegion final : public UnsafeRegion {
 
   void add_tail(Eigen::Index /*stage*/, const Gaussian& law, TailSum& sum) const override {
     if (rounded_) {
-      add_planar_tail(law, {&rounded_->bounded, 1}, rounded_->axes, sum);
+      add_planar_tail(law, rounded_->all(), axes_, sum);
     } else {
       add_part_tail(law, part_, sum);
     }
@@ -137,11 +122,10 @@ class BoxRegion final : public UnsafeRegion {
     const bool both = state.wanted == WantedBounds::kBoth;
     const double reached = both ? bound.markov : std::min(bound.smooth, state.useful);
     if (reached <= (both ? kNegligiblePart : std::max(state.worthwhile, kNegligiblePart))) return;
-    const Eigen::Vector2d mean = plane_point(state.law.mean, rounded_->axes);
-    const ConvexPart& part = rounded_->bounded.part;
-    const Eigen::Vector2d outward = nearest_surface(part, mean).outward;
+    const Eigen::Vector2d mean = plane_point(state.law.mean, axes_);
+    const Eigen::Vector2d outward = rounded_->nearest(mean, kInfinity).outward;
     if (outward.x() == 0.0 || outward.y() == 0.0) return;
-    const RegionProbability rounded = convex_probability(state, part, rounded_->axes);
+    const RegionProbability rounded = rounded_->probability(state, axes_);
     bound.markov = std::min(bound.markov, rounded.markov);
     bound.smooth = std::min(bound.smooth, rounded.smooth);
   }
@@ -151,7 +135,8 @@ class BoxRegion final : public UnsafeRegion {
   double radius_;
   BoxPart part_;
   std::vector<AxisInterval> intervals_;
-  std::optional<RoundedRectangle> rounded_;  ///< of four sides, if its corners are round
+  PlaneAxes axes_;                     ///< of rounded_
+  std::optional<ShapeParts> rounded_;  ///< the grown rectangle, if it has (round) corners
 };
 
 }  // namespace

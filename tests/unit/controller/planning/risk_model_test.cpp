@@ -242,6 +242,18 @@ TEST(RiskConstraint, is_the_logarithm_of_the_risk_over_its_limit) {
   EXPECT_EQ(constraint.count(), 1);
 }
 
+/// Open loop, straight on.
+Policy straight_policy(const models::Dynamics& car, const PlannerSettings& settings,
+                       const Gaussian& belief) {
+  Policy policy{.inputs = Eigen::MatrixXd::Zero(1, settings.horizon),
+                .states = {},
+                .gains = {},
+                .bounds = settings.bounds};
+  policy.states = nominal_states(car, belief.mean, policy.inputs);
+  policy.gains.assign(settings.horizon, Eigen::MatrixXd::Zero(1, 3));
+  return policy;
+}
+
 TEST(RiskConstraint, counts_once_what_stays_unsafe_where_the_sum_exceeds_the_limit) {
   const auto car = dubins_car();
   PlannerSettings settings = block_settings();
@@ -251,12 +263,7 @@ TEST(RiskConstraint, counts_once_what_stays_unsafe_where_the_sum_exceeds_the_lim
   RiskConstraint constraint(*car, settings);
   const Gaussian belief{.mean = Eigen::Vector3d::Zero(),
                         .covariance = Eigen::Vector3d(0.01, 0.04, 1e-4).asDiagonal()};
-  Policy policy{.inputs = Eigen::MatrixXd::Zero(1, settings.horizon),
-                .states = {},
-                .gains = {},
-                .bounds = settings.bounds};
-  policy.states = nominal_states(*car, belief.mean, policy.inputs);
-  policy.gains.assign(settings.horizon, Eigen::MatrixXd::Zero(1, 3));
+  const Policy policy = straight_policy(*car, settings, belief);
   PlanRisk by_sum;
   constraint.certify(belief, policy, by_sum);
   constraint.set_limits({.plan = 0.5 * by_sum.plan}, 0);
@@ -293,12 +300,7 @@ TEST(RiskConstraint, leaves_a_reserve_that_a_plan_may_use) {
   RiskConstraint constraint(*car, settings);
   const Gaussian belief{.mean = Eigen::Vector3d::Zero(),
                         .covariance = Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
-  Policy policy{.inputs = Eigen::MatrixXd::Zero(1, settings.horizon),
-                .states = {},
-                .gains = {},
-                .bounds = settings.bounds};
-  policy.states = nominal_states(*car, belief.mean, policy.inputs);
-  policy.gains.assign(settings.horizon, Eigen::MatrixXd::Zero(1, 3));
+  const Policy policy = straight_policy(*car, settings, belief);
   PlanRisk risk;
   constraint.certify(belief, policy, risk);
   const double plan = risk.plan;
