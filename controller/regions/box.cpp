@@ -10,6 +10,7 @@
 #include "controller/regions/shapes.hpp"
 #include "controller/regions/soft_part.hpp"
 #include "controller/regions/soft_region.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc::controller {
 namespace {
