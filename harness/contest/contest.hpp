@@ -54,6 +54,9 @@ struct Contest {
   std::vector<CampaignSetting> common{};
   SeedSet seeds{};
   std::optional<ContestTuning> tuning{};
+  /// Certified risk of a drive that is to be kept, between 0 and 1, see Standing::kept; none: not
+  /// asked.
+  std::optional<double> risk_limit{};
   std::int64_t timing_seeds = 3;  ///< number of timed seeds: the first ones of `seeds`
 
   /// All cells, ordered by scenario, then plant, then noise.

@@ -45,6 +45,7 @@ std::string head_line() {
   for (const auto& [name, member] : kRates) {
     head += fmt::format(",{0}.drives,{0}.rate,{0}.interval.lower,{0}.interval.upper", name);
   }
+  head += ",kept.drives,kept.rate,kept.interval.lower,kept.interval.upper";
   for (const auto& [name, member] : kMeans) {
     head += fmt::format(",{0}.drives,{0}.mean,{0}.interval.lower,{0}.interval.upper", name);
   }
@@ -55,6 +56,10 @@ std::string head_line() {
   return head +
          ",ocp_ms.periods,ocp_ms.late,ocp_ms.median,ocp_ms.p95,ocp_ms.p99,ocp_ms.max,"
          "ocp_ms.mean\n";
+}
+
+std::string rate_cells(const EpisodeRate& rate) {
+  return fmt::format(",{},{},{}", rate.events, cell_of(rate.rate), limits_of(rate.interval));
 }
 
 std::string share_cells(const ShareDifference& share, MatchResult result) {
@@ -82,10 +87,8 @@ std::string times_cells(const ContestTimes& times) {
 std::string standing_line(const std::string& where, const std::string& controller,
                           const Standing& standing) {
   std::string line = fmt::format("{},{},{}", where, csv_field(controller), standing.drives);
-  for (const auto& [name, member] : kRates) {
-    const EpisodeRate& rate = standing.*member;
-    line += fmt::format(",{},{},{}", rate.events, cell_of(rate.rate), limits_of(rate.interval));
-  }
+  for (const auto& [name, member] : kRates) line += rate_cells(standing.*member);
+  line += standing.kept ? rate_cells(*standing.kept) : ",,,,";
   for (const auto& [name, member] : kMeans) {
     const DriveMean& mean = standing.*member;
     line += fmt::format(",{},{},{}", mean.drives, cell_of(mean.mean), limits_of(mean.interval));

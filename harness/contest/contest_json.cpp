@@ -56,12 +56,14 @@ ContestJson standing_json(const Standing& standing) {
                    {"timeout", share_json(standing.timeout)},
                    {"fault", share_json(standing.fault)},
                    {"unsafe", share_json(standing.unsafe)},
+                   {"kept", nullptr},
                    {"believed", drive_mean_json(standing.believed)},
                    {"certified", drive_mean_json(standing.certified)},
                    {"certificate", scope_json(standing.no_bound)},
                    {"cost", drive_mean_json(standing.cost)},
                    {"versus", nullptr},
                    {"ocp_ms", contest_times_json(standing.times)}};
+  if (standing.kept) json["kept"] = share_json(*standing.kept);
   if (standing.versus) json["versus"] = versus_json(*standing.versus);
   return json;
 }
@@ -124,14 +126,16 @@ std::string contest_json(const ContestResults& results) {
                    {"reference", contest.controllers[contest.reference].name},
                    {"seeds", seeds_text(contest.seeds)},
                    {"common", texts_of(contest.common)},
+                   {"risk_limit", nullptr},
                    {"drives", results.asked},
                    {"done", results.done},
                    {"tuning", nullptr},
                    {"timing", nullptr}};
+  if (contest.risk_limit) json["risk_limit"] = *contest.risk_limit;
   if (contest.tuning) {
     json["tuning"] = {{"seeds", seeds_text(contest.tuning->seeds)},
                       {"budget", contest.tuning->budget},
-                      {"criterion", kTuningCriterion}};
+                      {"criterion", tuning_criterion(contest)}};
   }
   if (results.timed) json["timing"] = {{"seeds", contest.timing_seeds}, {"jobs", 1}};
   json["headline"] = contest_headline(results);

@@ -84,7 +84,12 @@ std::vector<KeyDescription> drives_of_contest() {
            .values = seed_values(),
            .words = "`{first: FIRST, count: COUNT}`, or a list of seeds, as in a "
                     "[campaign](campaign.md#the-campaign-file)",
-           .required = true}};
+           .required = true},
+          {.name = "risk_limit",
+           .values = {NumberValue{{.least = 0.0, .most = 1.0}}},
+           .words = "a certified risk that every drive is asked to keep; for each controller the "
+                    "share of drives that do is told as [`kept`](#what-is-measured)",
+           .fallback_words = "none"}};
 }
 
 std::vector<KeyDescription> tuning_of_contest() {

@@ -75,6 +75,16 @@ std::string belief_words(const Standing& standing) {
                      format_short(believed, 2));
 }
 
+/// "; arrives within a certified risk of 0.02 in 98 % of its drives [95, 99.6]".
+std::string kept_words(const ContestResults& results, const Standing& standing) {
+  if (!standing.kept) return {};
+  return fmt::format("; arrives within a certified risk of {:g}{} in {} of its drives [{}, {}]",
+                     *results.contest.risk_limit,
+                     standing.no_bound.empty() ? "" : ", which is no bound here,",
+                     percent(standing.kept->rate), format_percent(standing.kept->interval.lower),
+                     format_percent(standing.kept->interval.upper));
+}
+
 std::string count_words(const CellCounts& counts) {
   return fmt::format("{}–{}–{}", counts.wins, counts.ties, counts.losses);
 }
@@ -88,11 +98,12 @@ std::string cell_words(const ContestResults& results, std::size_t controller) {
                      count_words(cell_counts(results, controller, &Versus::economy)));
 }
 
-std::string reference_words(const Standing& standing) {
-  return fmt::format("The reference: {} of its drives arrive, {} [{}, {}] are unsafe; {}.",
+std::string reference_words(const ContestResults& results, const Standing& standing) {
+  return fmt::format("The reference: {} of its drives arrive, {} [{}, {}] are unsafe; {}{}.",
                      percent(standing.reached.rate), percent(standing.unsafe.rate),
                      format_percent(standing.unsafe.interval.lower),
-                     format_percent(standing.unsafe.interval.upper), belief_words(standing));
+                     format_percent(standing.unsafe.interval.upper), belief_words(standing),
+                     kept_words(results, standing));
 }
 
 }  // namespace
@@ -129,11 +140,11 @@ std::string contest_headline(const ContestResults& results) {
 std::string words_about(const ContestResults& results, std::size_t controller) {
   const Standing& standing = results.overall[controller];
   if (standing.drives == 0) return "No drive is done.";
-  if (!standing.versus) return reference_words(standing);
+  if (!standing.versus) return reference_words(results, standing);
   if (standing.versus->unsafe.pairs == 0) return "No drive can be compared with the reference yet.";
   return safety_words(results, controller) + arrival_words(results, controller) +
-         economy_words(*standing.versus) + "; " + belief_words(standing) + "." +
-         cell_words(results, controller);
+         economy_words(*standing.versus) + "; " + belief_words(standing) +
+         kept_words(results, standing) + "." + cell_words(results, controller);
 }
 
 }  // namespace qsmpc::harness

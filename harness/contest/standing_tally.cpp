@@ -12,11 +12,19 @@ namespace {
 constexpr double kShareRounding = 1e-9;
 
 /// The counted events of a drive, in the order of Standing's rates.
-enum Event : std::size_t { kReachedDrive, kCollided, kLeft, kTimedOut, kFaulted, kUnsafeDrive };
+enum Event : std::size_t {
+  kReachedDrive,
+  kCollided,
+  kLeft,
+  kTimedOut,
+  kFaulted,
+  kUnsafeDrive,
+  kKept
+};
 
 bool reached(const EpisodeRow& row) { return !is_failure(row); }
 
-bool has(const EpisodeRow& row, std::size_t event) {
+bool has(const EpisodeRow& row, std::size_t event, const std::optional<double>& risk_limit) {
   switch (event) {
     case kReachedDrive:
       return reached(row);
@@ -28,6 +36,8 @@ bool has(const EpisodeRow& row, std::size_t event) {
       return row.outcome == outcome_name(Outcome::kTimeout);
     case kFaulted:
       return row.outcome == outcome_name(Outcome::kFault);
+    case kKept:
+      return risk_limit && is_certified_within(row, *risk_limit);
     default:
       return row.unsafe;
   }
@@ -42,7 +52,9 @@ DriveMean drive_mean(const BootstrapMean& mean) {
 void StandingTally::add(const EpisodeRow& row, const Eigen::ArrayXd& weights) {
   SeedCounts& seed = seeds_[row.seed];
   ++seed.drives;
-  for (std::size_t event = 0; event < kCounted; ++event) seed.events[event] += has(row, event);
+  for (std::size_t event = 0; event < kCounted; ++event) {
+    seed.events[event] += has(row, event, risk_limit_);
+  }
   if (row.believed_sum && std::isfinite(*row.believed_sum)) {
     believed_.add(*row.believed_sum, weights);
   }
@@ -83,6 +95,7 @@ Standing StandingTally::result() const {
                     .believed = drive_mean(believed_),
                     .certified = drive_mean(certified_),
                     .cost = drive_mean(cost_)};
+  if (risk_limit_) standing.kept = rate_of(kKept);
   for (const auto& [seed, counts] : seeds_) standing.drives += counts.drives;
   return standing;
 }

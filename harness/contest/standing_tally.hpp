@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ namespace qsmpc::harness {
 /// Tallies the drives of one controller.
 class StandingTally {
  public:
+  /// risk_limit: Contest::risk_limit.
+  explicit StandingTally(std::optional<double> risk_limit) : risk_limit_(risk_limit) {}
+
   /// weights: poisson_weights of the row's seed.
   void add(const EpisodeRow& row, const Eigen::ArrayXd& weights);
 
@@ -26,13 +30,14 @@ class StandingTally {
   [[nodiscard]] Standing result() const;
 
  private:
-  static constexpr std::size_t kCounted = 6;
+  static constexpr std::size_t kCounted = 7;
   struct SeedCounts {
     std::int64_t drives = 0;
     std::array<std::int64_t, kCounted> events{};
   };
   [[nodiscard]] EpisodeRate rate_of(std::size_t event) const;
 
+  std::optional<double> risk_limit_;
   std::map<std::uint64_t, SeedCounts> seeds_{};
   BootstrapMean believed_{};
   BootstrapMean certified_{};

@@ -38,7 +38,9 @@ class TimesTally {
 
 /// All tallies of a controller.
 struct Tallies {
-  StandingTally standing{};
+  explicit Tallies(const Contest& contest) : standing(contest.risk_limit) {}
+
+  StandingTally standing;
   VersusTally versus{};
   TimesTally times{};
 };
@@ -51,7 +53,10 @@ std::string no_bound_of(const StoredVariant& variant) {
 class Evaluation {
  public:
   Evaluation(const Contest& contest, const StoreReader& drives, const StoreReader* timed)
-      : contest_(contest), drives_(drives), timed_(timed), overall_(contest.controllers.size()) {}
+      : contest_(contest),
+        drives_(drives),
+        timed_(timed),
+        overall_(contest.controllers.size(), Tallies(contest)) {}
 
   void add_cells(ContestResults& results) {
     std::size_t number = 0;
@@ -90,7 +95,7 @@ class Evaluation {
 
   Standing standing_of(const ContestCell& cell, std::size_t number, std::size_t controller) {
     const StoredVariant& variant = variant_in(drives_, cell, controller);
-    Tallies own;
+    Tallies own(contest_);
     Tallies& all = overall_[controller];
     drives_.for_each_episode(variant.id, [&](const EpisodeRow& row) {
       poisson_weights(row.seed, weights_);

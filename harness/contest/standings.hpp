@@ -80,7 +80,11 @@ struct Standing {
   EpisodeRate left_bounds{};
   EpisodeRate timeout{};
   EpisodeRate fault{};
-  EpisodeRate unsafe{};            ///< the true state entered the unsafe set
+  EpisodeRate unsafe{};  ///< the true state entered the unsafe set
+  /// Reached, with next-step certificates that sum to at most Contest::risk_limit; none without
+  /// one. Where certificates are bounds, a drive becomes unsafe before their sum exceeds a limit
+  /// with at most the limit's probability (docs/contest.md, "What is measured").
+  std::optional<EpisodeRate> kept{};
   DriveMean believed{};            ///< sum along a drive of the risk the controller estimated
   DriveMean certified{};           ///< sum along a drive of the next-step certificates
   std::string no_bound{};          ///< why its certificates are not bounds; empty if they are

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include <fmt/format.h>
+
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/contest/contest_plan.hpp"
 #include "harness/statistics/quantiles.hpp"
@@ -35,9 +37,10 @@ std::vector<TriedCandidate> tried_of(const Contest& contest, const StoreReader& 
       const std::size_t variant = variant_of(contest, contenders.size(), first + n, cell);
       search.for_each_episode(search.variants()[variant].id, [&](const EpisodeRow& row) {
         ++candidate.drives;
-        if (is_failure(row)) {
+        if (contest.risk_limit ? !is_certified_within(row, *contest.risk_limit) : is_failure(row)) {
           ++candidate.failures;
-        } else if (std::isfinite(row.cost)) {
+        }
+        if (!is_failure(row) && std::isfinite(row.cost)) {
           cost.add(row.cost);
         }
       });
@@ -54,6 +57,20 @@ std::vector<TriedCandidate> tried_of(const Contest& contest, const StoreReader& 
 }
 
 }  // namespace
+
+std::string failure_words(const Contest& contest) {
+  if (!contest.risk_limit) return "unsafe or not arrived";
+  return fmt::format("unsafe, not arrived or certified above {:g}", *contest.risk_limit);
+}
+
+std::string tuning_criterion(const Contest& contest) {
+  return "fewest drives that were unsafe or did not reach the target" +
+         (contest.risk_limit
+              ? fmt::format(" or were certified above {:g} in total", *contest.risk_limit)
+              : "") +
+         ", then the lowest mean cost of those that reached it, relative, for each scenario, plant "
+         "and noise level, to the mean over the controller's candidates";
+}
 
 std::size_t best_candidate(const std::vector<TriedCandidate>& tried) {
   const auto key = [](const TriedCandidate& candidate) {

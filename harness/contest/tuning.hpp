@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "harness/campaign/store/store_reader.hpp"
@@ -16,7 +17,9 @@ namespace qsmpc::harness {
 struct TriedCandidate {
   std::size_t candidate = 0;
   std::int64_t drives = 0;
-  std::int64_t failures = 0;  ///< drives that were unsafe or did not reach the target
+  /// Drives that were unsafe or did not reach the target, or, in a contest with a risk limit, did
+  /// not keep it (Standing::kept).
+  std::int64_t failures = 0;
   /// The mean cost of the drives that reached the target, in each cell divided by the mean over all
   /// candidates of the controller, then averaged over the cells; NaN if no drive reached the
   /// target.
@@ -29,11 +32,10 @@ struct TuningResult {
   ContestChoice choice{};
 };
 
+/// The failures of the search in words: "unsafe or not arrived".
+[[nodiscard]] std::string failure_words(const Contest& contest);
 /// The criterion in words.
-inline constexpr const char* kTuningCriterion =
-    "fewest drives that were unsafe or did not reach the target, then the lowest mean cost of "
-    "those that did, relative, for each scenario, plant and noise level, to the mean over the "
-    "controller's candidates";
+[[nodiscard]] std::string tuning_criterion(const Contest& contest);
 
 /// The best of `tried` by the criterion, the first of equal ones. `tried` has at least one.
 [[nodiscard]] std::size_t best_candidate(const std::vector<TriedCandidate>& tried);

@@ -46,12 +46,16 @@ std::string failure_share_html(const EpisodeRate& rate) {
   return rate.events > 0 ? "<strong class=\"alarm\">" + share + "</strong>" : share;
 }
 
-/// "1.5 % [0.1, 6]".
-std::string failure_share_with_interval_html(const EpisodeRate& rate) {
-  if (!std::isfinite(rate.rate)) return "–";
-  return fmt::format("{} <span class=\"soft\">[{}, {}]</span>", failure_share_html(rate),
+/// `share`, the share of `rate`, with its interval: "1.5 % [0.1, 6]".
+std::string with_interval_html(const std::string& share, const EpisodeRate& rate) {
+  if (!std::isfinite(rate.rate)) return share;
+  return fmt::format("{} <span class=\"soft\">[{}, {}]</span>", share,
                      escape_html(format_percent(rate.interval.lower)),
                      escape_html(format_percent(rate.interval.upper)));
+}
+
+std::string failure_share_with_interval_html(const EpisodeRate& rate) {
+  return with_interval_html(failure_share_html(rate), rate);
 }
 
 const char* mark_of(MatchResult result) {
@@ -122,6 +126,25 @@ void append(std::vector<std::string>& row, std::vector<std::string> cells) {
   std::ranges::move(cells, std::back_inserter(row));
 }
 
+/// The last cells of a row of either table.
+std::vector<std::string> merit_cells(const Standing& standing) {
+  std::vector<std::string> cells = {share_versus_html(standing.versus), sum_html(standing.believed),
+                                    certified_html(standing)};
+  if (standing.kept) {
+    cells.push_back(with_interval_html(share_alone_html(*standing.kept), *standing.kept));
+  }
+  cells.push_back(ratio_html(standing.versus));
+  append(cells, time_cells(standing.times));
+  return cells;
+}
+
+std::vector<std::string> merit_heads(const ContestResults& results) {
+  std::vector<std::string> heads = {"unsafe, vs reference", "believed", "certified"};
+  if (results.contest.risk_limit) heads.emplace_back("kept");
+  append(heads, {"cost, vs reference", "ms", "99 %"});
+  return heads;
+}
+
 bool has_faults(const ContestResults& results) {
   return std::ranges::any_of(results.overall,
                              [](const Standing& standing) { return standing.fault.events > 0; });
@@ -131,16 +154,13 @@ std::string overall_table(const ContestResults& results) {
   PageTable table{.label = "All drives, by controller", .heads = {"controller"}, .rows = {}};
   append(table.heads, outcome_heads());
   if (has_faults(results)) table.heads.emplace_back("fault");
-  append(table.heads,
-         {"unsafe, vs reference", "believed", "certified", "cost, vs reference", "ms", "99 %"});
+  append(table.heads, merit_heads(results));
   for (std::size_t n = 0; n < results.overall.size(); ++n) {
     const Standing& standing = results.overall[n];
     std::vector<std::string> row = {escape_html(results.contest.controllers[n].name)};
     append(row, outcome_cells(standing, failure_share_with_interval_html));
     if (has_faults(results)) row.push_back(share_alone_html(standing.fault));
-    append(row, {share_versus_html(standing.versus), sum_html(standing.believed),
-                 certified_html(standing), ratio_html(standing.versus)});
-    append(row, time_cells(standing.times));
+    append(row, merit_cells(standing));
     table.rows.push_back(std::move(row));
   }
   return table_html(table);
@@ -153,9 +173,13 @@ std::string overall_note(const ContestResults& results) {
       "<p class=\"note\">In brackets: 99 % intervals. Unsafe, vs reference: share of drives that "
       "collided or left the bounds, minus that of {0} on the same seeds, in percentage points. "
       "Believed and certified: sums over a drive of the probabilities that the next state is "
-      "unsafe, according to the controller itself and to its certificates. Cost: of drives that "
+      "unsafe, according to the controller itself and to its certificates. {1}Cost: of drives that "
       "arrive, relative to {0} on the seeds on which both arrive. ",
-      reference);
+      reference,
+      results.contest.risk_limit
+          ? fmt::format("Kept: drives that arrive and are certified at most {:g} in this sum. ",
+                        *results.contest.risk_limit)
+          : "");
   note += results.timed
               ? fmt::format(
                     "ms: time to plan and certify a period, from {} driven one at a time on one "
@@ -193,8 +217,7 @@ std::string cells_section(const ContestResults& results) {
       .label = "By map, plant and noise", .heads = {"map"}, .rows = {}, .text_columns = {1}};
   append(table.heads, {"controller"});
   append(table.heads, outcome_heads());
-  append(table.heads,
-         {"unsafe, vs reference", "believed", "certified", "cost, vs reference", "ms", "99 %"});
+  append(table.heads, merit_heads(results));
   for (const CellStandings& cell : results.cells) {
     for (std::size_t n = 0; n < cell.standings.size(); ++n) {
       const Standing& standing = cell.standings[n];
@@ -202,9 +225,7 @@ std::string cells_section(const ContestResults& results) {
       std::vector<std::string> row = {n == 0 ? name : "<span class=\"soft\">" + name + "</span>",
                                       escape_html(results.contest.controllers[n].name)};
       append(row, outcome_cells(standing, failure_share_html));
-      append(row, {share_versus_html(standing.versus), sum_html(standing.believed),
-                   certified_html(standing), ratio_html(standing.versus)});
-      append(row, time_cells(standing.times));
+      append(row, merit_cells(standing));
       table.rows.push_back(std::move(row));
     }
   }
@@ -231,10 +252,10 @@ std::string settings_html(const std::vector<CampaignSetting>& settings) {
 }
 
 /// The candidates tried for a controller with several.
-std::string tried_table(const ContestController& controller,
+std::string tried_table(const Contest& contest, const ContestController& controller,
                         const std::vector<TriedCandidate>& tried, std::size_t chosen) {
   PageTable table{.label = "Candidates of " + controller.name,
-                  .heads = {"candidate", "drives", "unsafe or not arrived", "cost, relative", ""},
+                  .heads = {"candidate", "drives", failure_words(contest), "cost, relative", ""},
                   .rows = {},
                   .text_columns = {4}};
   for (const TriedCandidate& one : tried) {
@@ -261,7 +282,7 @@ std::string tuning_section(const ContestResults& results) {
     table.rows.push_back({escape_html(controller.name), settings_html(controller.settings),
                           settings_html(controller.candidates[chosen].settings)});
     if (results.tuning.tried[n].empty()) continue;
-    tried += tried_table(controller, results.tuning.tried[n], chosen);
+    tried += tried_table(contest, controller, results.tuning.tried[n], chosen);
   }
   std::string note =
       "Every controller gets the same model, bounds, cost, horizon and time, the "
@@ -270,7 +291,7 @@ std::string tuning_section(const ContestResults& results) {
     note += fmt::format(
         " For each, up to {} were tried on the seeds {}, which the table does not contain: {}.",
         counted(static_cast<std::size_t>(contest.tuning->budget), "candidate"),
-        seeds_text(contest.tuning->seeds), kTuningCriterion);
+        seeds_text(contest.tuning->seeds), tuning_criterion(contest));
   }
   std::string common;
   if (!contest.common.empty()) {

@@ -91,4 +91,8 @@ bool is_failure(const EpisodeRow& row) {
   return row.outcome != outcome_name(Outcome::kReached) || row.unsafe;
 }
 
+bool is_certified_within(const EpisodeRow& row, double limit) {
+  return !is_failure(row) && row.next_step_sum <= limit;
+}
+
 }  // namespace qsmpc::harness

@@ -91,4 +91,8 @@ struct EpisodeRow {
 /// Whether the episode is a failure, whose trace TraceKeeping::kFailures keeps.
 [[nodiscard]] bool is_failure(const EpisodeRow& row);
 
+/// Whether the drive is no failure and its next-step certificates sum to at most `limit`, a
+/// probability; false where they are not numbers.
+[[nodiscard]] bool is_certified_within(const EpisodeRow& row, double limit);
+
 }  // namespace qsmpc::harness

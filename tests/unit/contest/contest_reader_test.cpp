@@ -28,19 +28,21 @@ TEST(ContestFile, has_defaults_for_all_that_it_leaves_out) {
   EXPECT_EQ(contest.plants[0].text, "");
   EXPECT_FALSE(contest.tuning);
   EXPECT_EQ(contest.timing_seeds, 3);
+  EXPECT_FALSE(contest.risk_limit);
   EXPECT_EQ(contest.cells().size(), 1U);
 }
 
 TEST(ContestFile, is_read_with_all_of_its_keys) {
   const LoadedContest loaded = folder().load(contest_text(
       "name: all\ndescription: of it\nreference: bold\nnoise: [1, 2]\nplants: [analytic]\n"
-      "common: {limit.steps: 2}\ntiming: {seeds: 1}\n"
+      "common: {limit.steps: 2}\ntiming: {seeds: 1}\nrisk_limit: 0.02\n"
       "tuning: {seeds: [1, 2], budget: 3, search: {careful: {controller.max_iterations: [3, "
       "4]}}}\n"));
   const Contest& contest = loaded.contest;
   EXPECT_EQ(contest.name, "all");
   EXPECT_EQ(contest.reference, 1U);
   EXPECT_EQ(contest.timing_seeds, 1);
+  EXPECT_EQ(contest.risk_limit, 0.02);
   ASSERT_TRUE(contest.tuning);
   EXPECT_EQ(contest.tuning->budget, 3);
   EXPECT_EQ(contest.controllers[0].grid, 2);
@@ -102,6 +104,9 @@ TEST(ContestFile, that_is_wrong_is_refused_at_its_line_and_key) {
               HasSubstr("tuning.budget: found nothing"));
   EXPECT_THAT(problems("tuning: {seeds: [1], budget: 1, search: {brave: {risk: [{}]}}}\n"),
               HasSubstr("tuning.search.brave: found brave, expected one of careful, bold"));
+  EXPECT_THAT(problems("risk_limit: 1.5\n"),
+              HasSubstr("small.yaml:6: risk_limit: found 1.5, expected a number from 0 to 1"));
+  EXPECT_THAT(problems("risk_limit: low\n"), HasSubstr("risk_limit: found low"));
   EXPECT_THAT(problems("rules: none\n"), HasSubstr("small.yaml:6: rules: found"));
   EXPECT_THAT(problems("common: {seed: 3}\n"), HasSubstr("common.seed: found a seed"));
   EXPECT_THAT(folder().problems("controllers: {a: {}}\nscenarios: [quick.yaml]\nseeds: [1]\n"),

@@ -41,6 +41,13 @@ EpisodeRow drive(std::int64_t variant, std::uint64_t seed, const std::string& ou
 /// the first cell and on the same twelve in the second; the costs of those drives do not count.
 class Standings : public ::testing::Test {
  protected:
+  /// Sum of `careful`'s certificates: above 0.02 on four seeds of the first cell, no number on one
+  /// of the second, else 0.02.
+  static double certified(std::int64_t cell, std::uint64_t seed) {
+    if (cell == 0) return seed < 4 ? 0.03 : 0.02;
+    return seed == 4 ? std::nan("") : 0.02;
+  }
+
   Standings() {
     std::vector<EpisodeRow> rows;
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -50,8 +57,10 @@ class Standings : public ::testing::Test {
         rows.push_back(drive(cell, seed, "reached", cost));
         rows.back().believed_sum = 0.25;
         rows.back().believed_max = 0.25;
+        rows.back().next_step_sum = certified(cell, seed);
         rows.push_back(
             drive(2 + cell, seed, hits ? "collision" : "reached", hits ? 1.0 : 0.9 * cost));
+        rows.back().next_step_sum = 0.001;
       }
     }
     fill("drives", loaded_.drives, rows);
@@ -135,6 +144,28 @@ TEST_F(Standings, count_each_seed_once_in_the_sign_test) {
   EXPECT_EQ(counts.wins + counts.ties, 0);
 }
 
+TEST_F(Standings, keep_a_risk_limit_where_they_arrive_and_are_certified_within_it) {
+  EXPECT_FALSE(results().overall[0].kept) << "no limit is asked";
+  loaded_.contest.risk_limit = 0.02;
+  const ContestResults all = results();
+  ASSERT_TRUE(all.overall[0].kept);
+  EXPECT_EQ(all.cells[0].standings[0].kept->events, 36);
+  EXPECT_EQ(all.cells[1].standings[0].kept->events, 39) << "a sum that is no number is not kept";
+  EXPECT_EQ(all.overall[0].kept->events, 75);
+  EXPECT_EQ(all.overall[1].kept->events, 56) << "those that collide do not keep it";
+  EXPECT_EQ(all.overall[1].kept->interval.lower, clopper_pearson(28, kSeeds, 0.005).lower);
+  EXPECT_THAT(words_about(all, 0), HasSubstr("; arrives within a certified risk of 0.02"));
+  EXPECT_THAT(words_about(all, 1), HasSubstr(" in 70 % of its drives ["));
+  EXPECT_THAT(contest_table(all), HasSubstr("  93.8 "));
+  EXPECT_THAT(contest_table(all), HasSubstr("certified at most 0.02 in total"));
+  const std::string page = contest_page(all);
+  EXPECT_EQ(testing::tag_problem(page), "");
+  EXPECT_THAT(page, HasSubstr(">kept</th>"));
+  EXPECT_THAT(page, HasSubstr("93.8 % <span"));
+  loaded_.contest.risk_limit = 0.0005;
+  EXPECT_EQ(results().overall[1].kept->events, 0);
+}
+
 TEST_F(Standings, without_significance_are_ties) {
   Versus versus;
   versus.unsafe = {.pairs = 99, .higher = 6, .lower = 0, .p_value = sign_test_p_value(6, 0)};
@@ -216,6 +247,9 @@ TEST_F(Standings, have_no_figure_of_a_cell_in_which_nobody_arrives) {
 }
 
 TEST_F(Standings, are_the_same_in_json_and_csv) {
+  EXPECT_EQ(nlohmann::json::parse(contest_json(results()))["risk_limit"], nullptr);
+  const std::string without = contest_csv(results());
+  loaded_.contest.risk_limit = 0.02;
   const ContestResults all = results();
   const auto json = nlohmann::json::parse(contest_json(all));
   EXPECT_EQ(json["cells"].size(), 2U);
@@ -225,6 +259,9 @@ TEST_F(Standings, are_the_same_in_json_and_csv) {
   EXPECT_EQ(bold["versus"]["unsafe"]["result"], "loss");
   EXPECT_EQ(bold["ocp_ms"]["max"], 7.0);
   EXPECT_EQ(json["controllers"]["careful"]["overall"]["versus"], nullptr);
+  EXPECT_EQ(json["risk_limit"], 0.02);
+  EXPECT_EQ(bold["kept"]["drives"], 56);
+  EXPECT_EQ(bold["kept"]["rate"], 0.7);
   std::istringstream lines(contest_csv(all));
   std::string head;
   std::getline(lines, head);
@@ -233,6 +270,7 @@ TEST_F(Standings, are_the_same_in_json_and_csv) {
     EXPECT_EQ(std::ranges::count(line, ','), std::ranges::count(head, ',')) << line;
   }
   EXPECT_EQ(count, 2 + 2 * 2) << "over all, and of each cell";
+  EXPECT_EQ(without.substr(0, without.find('\n')), head) << "with and without a limit";
 }
 
 TEST(SignTest, is_the_exact_binomial_one) {

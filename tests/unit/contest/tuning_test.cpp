@@ -77,6 +77,28 @@ TEST_F(TunedContest, weighs_every_cell_alike) {
   EXPECT_DOUBLE_EQ(result.tried[1][2].relative_cost, 0.5 * (10.0 / first + 10.0 / second));
 }
 
+TEST_F(TunedContest, with_a_risk_limit_counts_the_drives_that_do_not_keep_it) {
+  loaded_.contest.risk_limit = 0.01;
+  const std::string store = folder_.path("certified");
+  std::filesystem::create_directory(store);
+  std::vector<EpisodeRow> rows;
+  for (const std::int64_t variant : {0, 1, 2, 3, 4, 5}) {
+    for (const std::uint64_t seed : {50U, 51U}) rows.push_back(drive(variant, seed, 100.0));
+    // The first candidate exceeds the limit once, the last in both cells; the second is dearer.
+    rows.back().next_step_sum = variant == 0 || variant >= 4 ? 0.011 : 0.01;
+    rows.back().cost = variant == 2 || variant == 3 ? 300.0 : 100.0;
+  }
+  testing::fill_store(loaded_.search, store, rows);
+  const TuningResult result = tuned(loaded_.contest, StoreReader(store));
+  EXPECT_EQ(result.choice, (ContestChoice{0, 1}));
+  EXPECT_EQ(result.tried[1][0].failures, 1);
+  EXPECT_EQ(result.tried[1][1].failures, 0);
+  EXPECT_EQ(result.tried[1][2].failures, 2);
+  EXPECT_EQ(result.tried[1][0].relative_cost, result.tried[1][2].relative_cost)
+      << "drives that arrive count for the cost, within the limit or not";
+  EXPECT_NE(tuning_criterion(loaded_.contest).find("certified above 0.01"), std::string::npos);
+}
+
 TEST_F(TunedContest, chooses_what_the_contest_then_drives_with) {
   const Campaign drives = chosen_drives(loaded_.contest, {0, 1});
   EXPECT_EQ(drives.variants[2].settings, "bold, noise=1");
