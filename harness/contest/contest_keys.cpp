@@ -87,8 +87,9 @@ std::vector<KeyDescription> drives_of_contest() {
            .required = true},
           {.name = "risk_limit",
            .values = {NumberValue{{.least = 0.0, .most = 1.0}}},
-           .words = "a certified risk that every drive is asked to keep; for each controller the "
-                    "share of drives that do is told as [`kept`](#what-is-measured)",
+           .words = "a certified risk, {range}, that every drive is asked to keep; for each "
+                    "controller the share of drives that do is told as "
+                    "[`kept`](#what-is-measured)",
            .fallback_words = "none"}};
 }
 

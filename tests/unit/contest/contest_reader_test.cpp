@@ -105,7 +105,7 @@ TEST(ContestFile, that_is_wrong_is_refused_at_its_line_and_key) {
   EXPECT_THAT(problems("tuning: {seeds: [1], budget: 1, search: {brave: {risk: [{}]}}}\n"),
               HasSubstr("tuning.search.brave: found brave, expected one of careful, bold"));
   EXPECT_THAT(problems("risk_limit: 1.5\n"),
-              HasSubstr("small.yaml:6: risk_limit: found 1.5, expected a number from 0 to 1"));
+              HasSubstr("small.yaml:6: risk_limit: found 1.5, expected a number >= 0 and <= 1"));
   EXPECT_THAT(problems("risk_limit: low\n"), HasSubstr("risk_limit: found low"));
   EXPECT_THAT(problems("rules: none\n"), HasSubstr("small.yaml:6: rules: found"));
   EXPECT_THAT(problems("common: {seed: 3}\n"), HasSubstr("common.seed: found a seed"));
