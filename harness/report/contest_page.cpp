@@ -46,16 +46,12 @@ std::string failure_share_html(const EpisodeRate& rate) {
   return rate.events > 0 ? "<strong class=\"alarm\">" + share + "</strong>" : share;
 }
 
-/// `share`, the share of `rate`, with its interval: "1.5 % [0.1, 6]".
-std::string with_interval_html(const std::string& share, const EpisodeRate& rate) {
-  if (!std::isfinite(rate.rate)) return share;
-  return fmt::format("{} <span class=\"soft\">[{}, {}]</span>", share,
+/// "1.5 % [0.1, 6]".
+std::string failure_share_with_interval_html(const EpisodeRate& rate) {
+  if (!std::isfinite(rate.rate)) return "–";
+  return fmt::format("{} <span class=\"soft\">[{}, {}]</span>", failure_share_html(rate),
                      escape_html(format_percent(rate.interval.lower)),
                      escape_html(format_percent(rate.interval.upper)));
-}
-
-std::string failure_share_with_interval_html(const EpisodeRate& rate) {
-  return with_interval_html(failure_share_html(rate), rate);
 }
 
 const char* mark_of(MatchResult result) {
@@ -130,9 +126,7 @@ void append(std::vector<std::string>& row, std::vector<std::string> cells) {
 std::vector<std::string> merit_cells(const Standing& standing) {
   std::vector<std::string> cells = {share_versus_html(standing.versus), sum_html(standing.believed),
                                     certified_html(standing)};
-  if (standing.kept) {
-    cells.push_back(with_interval_html(share_alone_html(*standing.kept), *standing.kept));
-  }
+  if (standing.kept) cells.push_back(share_alone_html(*standing.kept));
   cells.push_back(ratio_html(standing.versus));
   append(cells, time_cells(standing.times));
   return cells;

@@ -161,7 +161,7 @@ TEST_F(Standings, keep_a_risk_limit_where_they_arrive_and_are_certified_within_i
   const std::string page = contest_page(all);
   EXPECT_EQ(testing::tag_problem(page), "");
   EXPECT_THAT(page, HasSubstr(">kept</th>"));
-  EXPECT_THAT(page, HasSubstr("93.8 % <span"));
+  EXPECT_THAT(page, HasSubstr(">93.8 %</td>"));
   loaded_.contest.risk_limit = 0.0005;
   EXPECT_EQ(results().overall[1].kept->events, 0);
 }
