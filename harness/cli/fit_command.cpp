@@ -1,5 +1,8 @@
+#include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -46,7 +49,24 @@ std::string shape_of(const Scenario& scenario) {
   return text + fmt::format(", a period of {} s", scenario.time_step);
 }
 
+/// A drive that counted twice would make the standard errors too small.
+void refuse_repeated(const std::vector<std::string>& folders) {
+  std::set<std::filesystem::path> seen;
+  for (const std::string& folder : folders) {
+    std::error_code error;
+    const std::filesystem::path place = std::filesystem::canonical(folder, error);
+    if (error) continue;  // reading it says why
+    if (!seen.insert(place).second) {
+      throw InputError({.file = folder,
+                        .key = "folders",
+                        .found = "the same drive a second time",
+                        .expected = "each drive once"});
+    }
+  }
+}
+
 Drives read_drives(const std::vector<std::string>& folders) {
+  refuse_repeated(folders);
   Drives drives;
   for (const std::string& folder : folders) {
     const Trace trace = read_folder(folder);

@@ -58,6 +58,11 @@ TEST(Fit, refuses_unknown_constants_and_drives_with_other_states) {
   EXPECT_THAT(mixed.errors,
               HasSubstr("found states position velocity, inputs acceleration, a period of 0.1 s"));
   EXPECT_EQ(run_qsmpc({"fit", folder / "none", "--parameter", "lag"}).exit_code, 2);
+  const ProcessResult twice =
+      run_qsmpc({"fit", folder / "drive", folder / "drive/", "--parameter", "lag"});
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.errors,
+              HasSubstr("found the same drive a second time, expected each drive once"));
 }
 
 }  // namespace fit_test
