@@ -40,12 +40,14 @@ std::string limits_of(const RateInterval& interval) {
   return cell_of(interval.lower) + "," + cell_of(interval.upper);
 }
 
+std::string rate_heads(const char* name) {
+  return fmt::format(",{0}.drives,{0}.rate,{0}.interval.lower,{0}.interval.upper", name);
+}
+
 std::string head_line() {
   std::string head = "scenario,plant,noise,controller,drives";
-  for (const auto& [name, member] : kRates) {
-    head += fmt::format(",{0}.drives,{0}.rate,{0}.interval.lower,{0}.interval.upper", name);
-  }
-  head += ",kept.drives,kept.rate,kept.interval.lower,kept.interval.upper";
+  for (const auto& [name, member] : kRates) head += rate_heads(name);
+  for (const char* name : {"kept", "promised"}) head += rate_heads(name);
   for (const auto& [name, member] : kMeans) {
     head += fmt::format(",{0}.drives,{0}.mean,{0}.interval.lower,{0}.interval.upper", name);
   }
@@ -88,7 +90,9 @@ std::string standing_line(const std::string& where, const std::string& controlle
                           const Standing& standing) {
   std::string line = fmt::format("{},{},{}", where, csv_field(controller), standing.drives);
   for (const auto& [name, member] : kRates) line += rate_cells(standing.*member);
-  line += standing.kept ? rate_cells(*standing.kept) : ",,,,";
+  for (const auto& rate : {standing.kept, standing.promised}) {
+    line += rate ? rate_cells(*rate) : ",,,,";
+  }
   for (const auto& [name, member] : kMeans) {
     const DriveMean& mean = standing.*member;
     line += fmt::format(",{},{},{}", mean.drives, cell_of(mean.mean), limits_of(mean.interval));

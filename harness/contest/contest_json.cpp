@@ -57,6 +57,7 @@ ContestJson standing_json(const Standing& standing) {
                    {"fault", share_json(standing.fault)},
                    {"unsafe", share_json(standing.unsafe)},
                    {"kept", nullptr},
+                   {"promised", nullptr},
                    {"believed", drive_mean_json(standing.believed)},
                    {"certified", drive_mean_json(standing.certified)},
                    {"certificate", scope_json(standing.no_bound)},
@@ -64,6 +65,7 @@ ContestJson standing_json(const Standing& standing) {
                    {"versus", nullptr},
                    {"ocp_ms", contest_times_json(standing.times)}};
   if (standing.kept) json["kept"] = share_json(*standing.kept);
+  if (standing.promised) json["promised"] = share_json(*standing.promised);
   if (standing.versus) json["versus"] = versus_json(*standing.versus);
   return json;
 }

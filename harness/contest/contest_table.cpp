@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kControllerWidth = 13;
 constexpr std::size_t kLineWidth = 106;
 constexpr std::size_t kKeptWidth = 7;
+constexpr std::size_t kPromisedWidth = 10;
+constexpr std::size_t kBelievedWidth = 9;
 constexpr std::size_t kLeftWidth = 6;
 constexpr std::size_t kTimeoutWidth = 8;
 
@@ -51,13 +53,15 @@ std::string table_row(const std::string& name, const Standing& standing) {
   std::string row = "  " + padded(printable(name, kControllerWidth - 2), kControllerWidth);
   row += right(format_percent(standing.reached.rate), 8);
   row += right(rate_cell(standing.collision), 18);
-  if (standing.kept) {
+  if (standing.kept && standing.promised) {
     row += right(format_percent(standing.kept->rate), kKeptWidth);
+    row += right(format_percent(standing.promised->rate), kPromisedWidth);
   } else {
     row += right(format_percent(standing.left_bounds.rate), kLeftWidth);
     row += right(format_percent(standing.timeout.rate), kTimeoutWidth);
+    row += right(standing.believed.drives == 0 ? "-" : short_number(standing.believed.mean),
+                 kBelievedWidth);
   }
-  row += right(standing.believed.drives == 0 ? "-" : short_number(standing.believed.mean), 9);
   row += right(short_number(standing.certified.mean), 10);
   row += right(cost_cell(standing), 23);
   row += right(times.periods == 0 ? "-" : format_short(times.ocp_ms.median, 2), 6);
@@ -77,13 +81,15 @@ std::string contest_table(const ContestResults& results) {
   const Contest& contest = results.contest;
   std::string text = fmt::format("{}: {} of {} drives\n{}\n\n", printable(contest.name, 60),
                                  results.done, results.asked, contest_headline(results));
-  // With a limit there is no room for the ways in which drives end without a collision.
-  const std::string ends = contest.risk_limit
-                               ? right("kept", kKeptWidth)
-                               : right("left", kLeftWidth) + right("timeout", kTimeoutWidth);
+  // With a limit there is no room for the ways in which drives end without a collision, nor for
+  // what controllers believe.
+  const std::string judged = contest.risk_limit
+                                 ? right("kept", kKeptWidth) + right("promised", kPromisedWidth)
+                                 : right("left", kLeftWidth) + right("timeout", kTimeoutWidth) +
+                                       right("believed", kBelievedWidth);
   text += "  " + padded("controller", kControllerWidth) + right("reached", 8) +
-          right("collided [99 %]", 18) + ends + right("believed", 9) + right("certified", 10) +
-          right("cost", 23) + right("ms", 6) + right("99 %", 7) + "\n";
+          right("collided [99 %]", 18) + judged + right("certified", 10) + right("cost", 23) +
+          right("ms", 6) + right("99 %", 7) + "\n";
   for (std::size_t n = 0; n < contest.controllers.size(); ++n) {
     text += table_row(contest.controllers[n].name, results.overall[n]);
   }
@@ -91,16 +97,17 @@ std::string contest_table(const ContestResults& results) {
   for (std::size_t n = 0; n < contest.controllers.size(); ++n) {
     text += indented(printable(contest.controllers[n].name, 60) + ": " + words_about(results, n));
   }
-  const std::string kept =
+  const std::string limit =
       contest.risk_limit
-          ? fmt::format("kept: that arrive and are certified at most {:g} in total. ",
-                        *contest.risk_limit)
-          : "";
+          ? fmt::format(
+                "kept: that arrive and are certified at most {0:g} in total. promised: that "
+                "arrive, with every plan certified at most {0:g}. certified: its sum",
+                *contest.risk_limit)
+          : "believed, certified: sums";
   return text + "\n" +
-         indented("Shares of drives in %. " + kept +
-                  "believed, certified: sums over a drive. cost: of the drives that arrive, "
-                  "relative to the reference's on the same seeds. ms: planning and certifying, one "
-                  "drive at a time.");
+         indented("Shares of drives in %. " + limit +
+                  " over a drive. cost: of the drives that arrive, relative to the reference's on "
+                  "the same seeds. ms: planning and certifying, one drive at a time.");
 }
 
 }  // namespace qsmpc::harness

@@ -75,14 +75,18 @@ std::string belief_words(const Standing& standing) {
                      format_short(believed, 2));
 }
 
-/// "; arrives within a certified risk of 0.02 in 98 % of its drives [95, 99.6]".
+/// "; arrives within a certified risk of 0.02 in 98 % of its drives [95, 99.6], with every plan
+/// certified within it in 90 % [84, 95]".
 std::string kept_words(const ContestResults& results, const Standing& standing) {
-  if (!standing.kept) return {};
-  return fmt::format("; arrives within a certified risk of {:g}{} in {} of its drives [{}, {}]",
-                     *results.contest.risk_limit,
-                     standing.no_bound.empty() ? "" : ", which is no bound here,",
-                     percent(standing.kept->rate), format_percent(standing.kept->interval.lower),
-                     format_percent(standing.kept->interval.upper));
+  if (!standing.kept || !standing.promised) return {};
+  const RateInterval& promised = standing.promised->interval;
+  return fmt::format(
+      "; arrives within a certified risk of {:g}{} in {} of its drives [{}, {}], with "
+      "every plan certified within it in {} [{}, {}]",
+      *results.contest.risk_limit, standing.no_bound.empty() ? "" : ", which is no bound here,",
+      percent(standing.kept->rate), format_percent(standing.kept->interval.lower),
+      format_percent(standing.kept->interval.upper), percent(standing.promised->rate),
+      format_percent(promised.lower), format_percent(promised.upper));
 }
 
 std::string count_words(const CellCounts& counts) {

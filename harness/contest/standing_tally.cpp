@@ -19,7 +19,8 @@ enum Event : std::size_t {
   kTimedOut,
   kFaulted,
   kUnsafeDrive,
-  kKept
+  kKept,
+  kPromised
 };
 
 bool reached(const EpisodeRow& row) { return !is_failure(row); }
@@ -38,6 +39,8 @@ bool has(const EpisodeRow& row, std::size_t event, const std::optional<double>& 
       return row.outcome == outcome_name(Outcome::kFault);
     case kKept:
       return risk_limit && is_certified_within(row, *risk_limit);
+    case kPromised:
+      return risk_limit && is_planned_within(row, *risk_limit);
     default:
       return row.unsafe;
   }
@@ -95,7 +98,10 @@ Standing StandingTally::result() const {
                     .believed = drive_mean(believed_),
                     .certified = drive_mean(certified_),
                     .cost = drive_mean(cost_)};
-  if (risk_limit_) standing.kept = rate_of(kKept);
+  if (risk_limit_) {
+    standing.kept = rate_of(kKept);
+    standing.promised = rate_of(kPromised);
+  }
   for (const auto& [seed, counts] : seeds_) standing.drives += counts.drives;
   return standing;
 }

@@ -30,7 +30,7 @@ class StandingTally {
   [[nodiscard]] Standing result() const;
 
  private:
-  static constexpr std::size_t kCounted = 7;
+  static constexpr std::size_t kCounted = 8;
   struct SeedCounts {
     std::int64_t drives = 0;
     std::array<std::int64_t, kCounted> events{};

@@ -85,6 +85,9 @@ struct Standing {
   /// one. Where certificates are bounds, a drive becomes unsafe before their sum exceeds a limit
   /// with at most the limit's probability (docs/contest.md, "What is measured").
   std::optional<EpisodeRate> kept{};
+  /// Reached, with every plan certified at most Contest::risk_limit at any of its stages before it
+  /// was driven; none without a limit.
+  std::optional<EpisodeRate> promised{};
   DriveMean believed{};            ///< sum along a drive of the risk the controller estimated
   DriveMean certified{};           ///< sum along a drive of the next-step certificates
   std::string no_bound{};          ///< why its certificates are not bounds; empty if they are

@@ -126,7 +126,9 @@ void append(std::vector<std::string>& row, std::vector<std::string> cells) {
 std::vector<std::string> merit_cells(const Standing& standing) {
   std::vector<std::string> cells = {share_versus_html(standing.versus), sum_html(standing.believed),
                                     certified_html(standing)};
-  if (standing.kept) cells.push_back(share_alone_html(*standing.kept));
+  for (const auto& rate : {standing.kept, standing.promised}) {
+    if (rate) cells.push_back(share_alone_html(*rate));
+  }
   cells.push_back(ratio_html(standing.versus));
   append(cells, time_cells(standing.times));
   return cells;
@@ -134,7 +136,7 @@ std::vector<std::string> merit_cells(const Standing& standing) {
 
 std::vector<std::string> merit_heads(const ContestResults& results) {
   std::vector<std::string> heads = {"unsafe, vs reference", "believed", "certified"};
-  if (results.contest.risk_limit) heads.emplace_back("kept");
+  if (results.contest.risk_limit) append(heads, {"kept", "promised"});
   append(heads, {"cost, vs reference", "ms", "99 %"});
   return heads;
 }
@@ -171,7 +173,8 @@ std::string overall_note(const ContestResults& results) {
       "arrive, relative to {0} on the seeds on which both arrive. ",
       reference,
       results.contest.risk_limit
-          ? fmt::format("Kept: drives that arrive and are certified at most {:g} in this sum. ",
+          ? fmt::format("Kept: drives that arrive and are certified at most {0:g} in this sum; "
+                        "promised: with every plan certified at most {0:g}. ",
                         *results.contest.risk_limit)
           : "");
   note += results.timed

@@ -95,4 +95,8 @@ bool is_certified_within(const EpisodeRow& row, double limit) {
   return !is_failure(row) && row.next_step_sum <= limit;
 }
 
+bool is_planned_within(const EpisodeRow& row, double limit) {
+  return !is_failure(row) && row.horizon_max <= limit;
+}
+
 }  // namespace qsmpc::harness

@@ -95,4 +95,8 @@ struct EpisodeRow {
 /// probability; false where they are not numbers.
 [[nodiscard]] bool is_certified_within(const EpisodeRow& row, double limit);
 
+/// Whether the drive is no failure and each of its plans was certified at most `limit`, a
+/// probability, at any stage; false without plans.
+[[nodiscard]] bool is_planned_within(const EpisodeRow& row, double limit);
+
 }  // namespace qsmpc::harness

@@ -58,6 +58,8 @@ class Standings : public ::testing::Test {
         rows.back().believed_sum = 0.25;
         rows.back().believed_max = 0.25;
         rows.back().next_step_sum = certified(cell, seed);
+        // No plans on three seeds, one above 0.02 on the next two.
+        rows.back().horizon_max = seed < 3 ? std::nan("") : seed < 5 ? 0.021 : 0.02;
         rows.push_back(
             drive(2 + cell, seed, hits ? "collision" : "reached", hits ? 1.0 : 0.9 * cost));
         rows.back().next_step_sum = 0.001;
@@ -154,6 +156,11 @@ TEST_F(Standings, keep_a_risk_limit_where_they_arrive_and_are_certified_within_i
   EXPECT_EQ(all.overall[0].kept->events, 75);
   EXPECT_EQ(all.overall[1].kept->events, 56) << "those that collide do not keep it";
   EXPECT_EQ(all.overall[1].kept->interval.lower, clopper_pearson(28, kSeeds, 0.005).lower);
+  EXPECT_EQ(all.overall[0].promised->events, 2 * 35);
+  EXPECT_EQ(all.cells[0].standings[0].promised->interval.upper,
+            clopper_pearson(35, kSeeds, 0.005).upper);
+  EXPECT_THAT(words_about(all, 0), HasSubstr(", with every plan certified within it in 87.5 % ["));
+  EXPECT_THAT(contest_page(all), HasSubstr(">87.5 %</td>"));
   EXPECT_THAT(words_about(all, 0), HasSubstr("; arrives within a certified risk of 0.02"));
   EXPECT_THAT(words_about(all, 1), HasSubstr(" in 70 % of its drives ["));
   EXPECT_THAT(contest_table(all), HasSubstr("  93.8 "));
@@ -262,6 +269,7 @@ TEST_F(Standings, are_the_same_in_json_and_csv) {
   EXPECT_EQ(json["risk_limit"], 0.02);
   EXPECT_EQ(bold["kept"]["drives"], 56);
   EXPECT_EQ(bold["kept"]["rate"], 0.7);
+  EXPECT_EQ(json["controllers"]["careful"]["overall"]["promised"]["drives"], 70);
   std::istringstream lines(contest_csv(all));
   std::string head;
   std::getline(lines, head);
