@@ -81,9 +81,9 @@ class ContestReader {
     }
     if (const YamlNode* node = root_.tree("noise")) read_noise(*node);
     contest_.seeds = read_seeds(root_, "seeds", problems_);
-    if (root_.has("risk_limit")) {
-      contest_.risk_limit = root_.number("risk_limit", 0.0, {.least = 0.0, .most = 1.0});
-    }
+    // Read even where it is absent, so that misspelt keys are compared with it.
+    const double limit = root_.number("risk_limit", 0.0, {.least = 0.0, .most = 1.0});
+    if (root_.has("risk_limit")) contest_.risk_limit = limit;
     read_tuning();
     read_timing();
     root_.refuse_unread();

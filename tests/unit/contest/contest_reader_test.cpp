@@ -106,6 +106,7 @@ TEST(ContestFile, that_is_wrong_is_refused_at_its_line_and_key) {
               HasSubstr("tuning.search.brave: found brave, expected one of careful, bold"));
   EXPECT_THAT(problems("risk_limit: 1.5\n"),
               HasSubstr("small.yaml:6: risk_limit: found 1.5, expected a number >= 0 and <= 1"));
+  EXPECT_THAT(problems("risk_limt: 0.02\n"), HasSubstr("expected risk_limit"));
   EXPECT_THAT(problems("risk_limit: low\n"), HasSubstr("risk_limit: found low"));
   EXPECT_THAT(problems("rules: none\n"), HasSubstr("small.yaml:6: rules: found"));
   EXPECT_THAT(problems("common: {seed: 3}\n"), HasSubstr("common.seed: found a seed"));
