@@ -299,6 +299,14 @@ TEST(KeyRanges, follow_one_another_and_leave_nothing_out) {
   EXPECT_EQ(parts.back().last_seed, std::numeric_limits<std::int64_t>::max());
 }
 
+// SQLite is told the file as a URI.
+TEST_F(MergeOfParts, finds_stores_in_folders_of_any_name) {
+  const std::string named = work / "50%25 of 2? #1&mode=rw;é";
+  fs::rename(part({5, 6}), named);
+  EXPECT_EQ(merge_stores({part({7, 8}), named}, out(), {}).episodes, 8);
+  EXPECT_EQ(ends(1)[1], testing::example_row(1, 6).timing.finished_at);
+}
+
 TEST_F(MergeOfParts, refuses_episodes_that_contradict_each_other) {
   EXPECT_THAT(refusal_of_parts({part({5, 6}), part({6, 7}, 1e-9), part({8})}, {.duplicates = true}),
               HasSubstr("variant three, seed 6: found a row of table episode that differs from "

@@ -61,6 +61,39 @@ std::vector<Eigen::MatrixXd> drive(Planner& planner, int periods) {
   return driven;
 }
 
+/// The efforts of the ladder, two per decade, whose gains for the plan's inputs are the plan's.
+std::vector<int> steps_of(const Plan& plan, const Gaussian& belief) {
+  std::vector<int> steps;
+  const auto car = dubins_car();
+  for (int step = -4; step <= 7; ++step) {
+    Planner fixed(*car, stiff(0.02, std::pow(10.0, 0.5 * step)));
+    const Plan& same = fixed.prescribe(belief, plan.policy.inputs);
+    if (same.policy.gains.front().isApprox(plan.policy.gains.front(), 1e-6)) steps.push_back(step);
+  }
+  return steps;
+}
+
+TEST(EffortChoice, follows_the_drive_in_steps_to_a_neighbour) {
+  const auto car = dubins_car();
+  Planner planner(*car, stiff(0.02, std::nullopt));
+  Gaussian belief = near_start();
+  std::vector<int> driven;
+  for (int n = 0; n < 15; ++n) {
+    const Plan& plan = planner.plan(belief);
+    const std::vector<int> steps = steps_of(plan, belief);
+    ASSERT_EQ(steps.size(), 1U) << "period " << n;
+    driven.push_back(steps.front());
+    belief.mean = plan.policy.states.col(1);
+  }
+  // A plan has the gains of the effort that was chosen before it.
+  int changes = 0;
+  for (std::size_t n = 2; n < driven.size(); ++n) {
+    EXPECT_LE(std::abs(driven[n] - driven[n - 1]), 1) << "period " << n;
+    changes += driven[n] == driven[n - 1] ? 0 : 1;
+  }
+  EXPECT_GT(changes, 0) << ::testing::PrintToString(driven);
+}
+
 // Campaigns drive one episode after another with the same planner.
 TEST(EffortChoice, begins_anew_after_a_reset_whatever_was_driven_before) {
   const auto car = dubins_car();
