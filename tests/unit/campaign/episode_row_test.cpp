@@ -42,6 +42,34 @@ TEST(EpisodeRow, takes_the_certificate_of_the_next_step) {
   }
 }
 
+TEST(EpisodeRow, has_the_numbers_of_the_summary) {
+  Trace trace = testing::example_trace({});
+  controller::StageCertificate& first = trace.steps[1].certificates.front();
+  first.figures.resize(controller::certificate_entries().size(), 0.0);
+  first.figures[controller::certificate_index("thesis")] = 0.25;
+  const EpisodeView view(trace);
+  const Summary& summary = view.summary();
+  const EpisodeRow row = episode_row(view, 0);
+  EXPECT_EQ(row.seed, summary.seed);
+  EXPECT_EQ(row.outcome, summary.outcome);
+  EXPECT_EQ(row.steps, summary.steps);
+  EXPECT_EQ(row.min_clearance, summary.min_clearance);
+  EXPECT_EQ(row.cost, summary.closed_loop_cost);
+  EXPECT_EQ(row.next_step_max, summary.next_step_max);
+  EXPECT_EQ(row.next_step_sum, summary.next_step_sum);
+  EXPECT_EQ(row.horizon_max, summary.horizon_max);
+  EXPECT_EQ(row.thesis_max, summary.thesis_max);
+  EXPECT_EQ(row.iterations_median, summary.iterations_median);
+  EXPECT_EQ(row.version, summary.version);
+  // None of them is what a row has by default.
+  const EpisodeRow none;
+  EXPECT_NE(row.thesis_max, none.thesis_max);
+  EXPECT_NE(row.horizon_max, none.horizon_max);
+  EXPECT_NE(row.next_step_sum, none.next_step_sum);
+  EXPECT_NE(row.next_step_max, none.next_step_max);
+  EXPECT_NE(row.iterations_median, none.iterations_median);
+}
+
 TEST(EpisodeRow, keeps_a_path_of_few_points_that_ends_where_the_drive_did) {
   Trace trace = testing::example_trace({.steps = 500});
   const EpisodeRow row = episode_row(EpisodeView(trace), 0);

@@ -65,9 +65,11 @@ TEST_P(ChangeOfVariables, has_the_slope_of_central_differences) {
     const Eigen::VectorXd theta = Eigen::VectorXd::Constant(5, at);
     Eigen::VectorXd slope = Eigen::VectorXd::Constant(5, 2.0);
     bounded.pull_back(theta, slope);
-    const Eigen::VectorXd expected = (inputs(theta.array() + kStep) - inputs(theta.array() - kStep)) /
-                                     kStep;  // times 2, as the gradient
-    EXPECT_TRUE(slope.isApprox(expected, 1e-6)) << slope.transpose() << "\n" << expected.transpose();
+    const Eigen::VectorXd expected =
+        (inputs(theta.array() + kStep) - inputs(theta.array() - kStep)) /
+        kStep;  // times 2, as the gradient
+    EXPECT_TRUE(slope.isApprox(expected, 1e-6)) << slope.transpose() << "\n"
+                                                << expected.transpose();
   }
 }
 
@@ -85,9 +87,12 @@ INSTANTIATE_TEST_SUITE_P(All, ChangeOfVariables,
                                            InputBounding::kPenalty),
                          [](const auto& kind) {
                            switch (kind.param) {
-                             case InputBounding::kSigmoid: return "sigmoid";
-                             case InputBounding::kTanh: return "tanh";
-                             case InputBounding::kPenalty: return "penalty";
+                             case InputBounding::kSigmoid:
+                               return "sigmoid";
+                             case InputBounding::kTanh:
+                               return "tanh";
+                             case InputBounding::kPenalty:
+                               return "penalty";
                            }
                            return "unknown";
                          });
