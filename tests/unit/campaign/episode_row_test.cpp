@@ -80,6 +80,14 @@ TEST(EpisodeRow, keeps_a_path_of_few_points_that_ends_where_the_drive_did) {
   EXPECT_NEAR(row.path.back().y, trace.final_state[1], 1e-5 * std::abs(trace.final_state[1]));
 }
 
+TEST(EpisodeRow, keeps_every_state_of_a_short_path_once) {
+  const Trace trace = testing::example_trace({.steps = 6});
+  const EpisodeRow row = episode_row(EpisodeView(trace), 0);
+  ASSERT_EQ(row.path.size(), 7U);
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(row.path[k].x, trace.steps[k].state[0], 1e-4);
+  EXPECT_NEAR(row.path[6].x, trace.final_state[0], 1e-4);
+}
+
 TEST(EpisodeRow, keeps_the_two_states_of_the_map_of_a_system_without_a_place_in_the_plane) {
   Trace trace = testing::example_trace({.steps = 500});
   trace.system.position_x = -1;

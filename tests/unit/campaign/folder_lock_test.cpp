@@ -82,7 +82,14 @@ TEST(FolderLock, does_not_write_through_a_symbolic_link) {
 }
 
 TEST(FolderLock, names_the_folder_that_cannot_be_locked) {
-  EXPECT_THROW(FolderLock{"/no/such/folder"}, IoError);
+  try {
+    const FolderLock lock("/no/such/folder");
+    FAIL() << "locked";
+  } catch (const IoError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/no/such/folder"));
+    EXPECT_THAT(error.what(), HasSubstr("opened"));
+    EXPECT_THAT(error.what(), HasSubstr("No such file or directory"));
+  }
 }
 
 }  // namespace folder_lock_test

@@ -190,6 +190,12 @@ TEST_F(Merge, refuses_shards_of_other_campaigns) {
   const std::string first = shard(testing::quick_campaign(), {.index = 1, .count = 2});
   EXPECT_THAT(refusal({first, shard(other, {.index = 2, .count = 2})}),
               HasSubstr("name: found other, expected quick"));
+  const std::string newer = shard(testing::quick_campaign(), {.index = 2, .count = 2});
+  SQLite::Database(newer + "/campaign.sqlite", SQLite::OPEN_READWRITE)
+      .exec("UPDATE campaign SET version = '99.0'");
+  EXPECT_THAT(refusal({first, newer}),
+              HasSubstr(fmt::format("version: found 99.0, expected {}",
+                                    stored_campaign(testing::quick_campaign(), {}).version)));
   other = testing::quick_campaign();
   other.variants[0] = testing::quick_variant("three", 4);
   EXPECT_THAT(refusal({first, shard(other, {.index = 2, .count = 2})}),

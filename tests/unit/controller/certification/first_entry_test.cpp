@@ -160,6 +160,19 @@ TEST(FirstEntry, bounds_what_enters_a_half_plane_that_turns) {
   EXPECT_LT(so_far, 0.8 * bounds.shares.sum());
 }
 
+TEST(FirstEntry, is_certain_or_impossible_without_noise) {
+  const Case car =
+      make_case("certain", dubins_car(), around(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()),
+                Eigen::Matrix3d::Zero(), Eigen::VectorXd::Zero(1), {});
+  SafeSet safe_set = unbounded_safe_set(3);
+  safe_set.bounds.upper[0] = 0.7;  // the car moves 0.15 m a stage
+  const UnsafeSet unsafe(safe_set);
+  const std::vector<double> entries = first_entry_bounds(unsafe, bounds_of(car.motion(), unsafe));
+  ASSERT_EQ(entries.size(), 8U);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(entries[k], 0.0) << k + 1;
+  EXPECT_EQ(entries[4], 1.0);
+}
+
 TEST(FirstEntry, counts_once_what_stays_unsafe) {
   Generator generator(304);
   // Noise that enters early keeps the car beyond the wall.

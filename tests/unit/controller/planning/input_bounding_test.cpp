@@ -1,6 +1,7 @@
 // The changes of variables that keep a box: inverse and slope, for every kind of bounds.
 #include "controller/planning/solvers/input_bounding.hpp"
 
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -79,6 +80,26 @@ TEST_P(ChangeOfVariables, stays_within_the_bounds_for_any_variable) {
     const Eigen::VectorXd z = inputs(Eigen::VectorXd::Constant(5, at));
     EXPECT_TRUE((z.array() >= kLower.array()).all() && (z.array() <= kUpper.array()).all())
         << z.transpose();
+  }
+}
+
+TEST_P(ChangeOfVariables,
+       excess_is_zero_within_the_bounds_and_has_the_slope_of_differences_beyond) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(5);
+  const Eigen::VectorXd within = (Eigen::VectorXd(5) << 3.0, 40.0, 7.0, -0.5, 1e3).finished();
+  EXPECT_EQ(bounded.excess(within, 5.0, gradient), 0.0);
+  EXPECT_EQ(gradient, Eigen::VectorXd::Zero(5));
+  // A quarter of the range beyond the first bound, twice the range beyond the second, 3 and 0.5
+  // beyond those without a range.
+  const Eigen::VectorXd beyond = (Eigen::VectorXd(5) << 4.0, 39.0, -1.0, 0.0, 1e3).finished();
+  EXPECT_DOUBLE_EQ(bounded.excess(beyond, 5.0, gradient), 0.0625 + 4.0 + 9.0 + 0.25);
+  constexpr double kStep = 1e-6;
+  Eigen::VectorXd ignored = Eigen::VectorXd::Zero(5);
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(5, i);
+    const double difference =
+        bounded.excess(beyond + step, 0.0, ignored) - bounded.excess(beyond - step, 0.0, ignored);
+    EXPECT_NEAR(gradient[i], 5.0 * difference / (2.0 * kStep), 1e-6 * std::abs(gradient[i]) + 1e-7);
   }
 }
 

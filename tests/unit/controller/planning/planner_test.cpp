@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +15,19 @@ namespace qsmpc::controller {
 namespace planner_test {
 
 using namespace testing;
+
+TEST(Planner, the_way_to_the_target_along_a_path_is_what_is_left_of_it) {
+  const auto car = dubins_car();
+  PlannerSettings settings = dubins_settings();
+  const Eigen::Matrix2Xd line{{0.0, 5.0, 10.0}, {0.0, 0.0, 0.0}};
+  settings.path = PathTarget{
+      .path = std::make_shared<const ArcPath>(line, false), .speed = SpeedProfile(1.5), .end = 8.0};
+  Planner planner(*car, settings);
+  const Eigen::Vector3d state(3.0, 0.0, 0.0);
+  EXPECT_EQ(planner.way_to_target(state, 3.0), 5.0);
+  EXPECT_EQ(planner.way_to_target(state, 8.0), 0.0);
+  EXPECT_EQ(planner.way_to_target(state, 9.0), 0.0) << "beyond its end";
+}
 
 TEST(Planner, plan_is_consistent_with_itself) {
   const auto car = dubins_car();
