@@ -84,17 +84,22 @@ def compilations():
     return found
 
 
-def link(output, objects, place, flags=(), without=None):
-    """Links what the build has as `output`, with `objects` instead of those of libraries, or instead of the object
-    `without`. Returns whether that was possible."""
+def link(output, objects, place, flags=(), original=None):
+    """Links what the build has as `output` with `objects`, which come before those of libraries that define the same,
+    and without the object `original`. Returns whether that was possible."""
     steps = must(["ninja", "-C", BUILD, "-t", "commands", output], f"asking how {output} is linked")
     last = steps.strip().splitlines()[-1]  # followed by what the build does with it
     words = shlex.split(next(step for step in last.split("&&") if f" -o {output} " in step))
-    words = [word for word in words if BUILD / word != without]
-    # Before the libraries, so that none is searched for what the objects define.
+    words = [word for word in words if BUILD / word != original]
     at = words.index("-o")
-    words[at:at + 2] = [*map(str, objects), *flags, "-o", str(place)]
-    return stopped(run(words, cwd=BUILD)).returncode == 0
+    # Traced twice, the linker also names what it takes from libraries: the original where the objects lack something.
+    words[at:at + 2] = [*map(str, objects), *flags, "-Wl,--trace", "-Wl,--trace", "-o", str(place)]
+    done = stopped(run(words, cwd=BUILD))
+    if original is not None:
+        library = next(part for part in original.parts if part.endswith(".dir")).removesuffix(".dir")
+        if f"lib{library}.a){original.name}" in done.stdout:
+            return False
+    return done.returncode == 0
 
 
 def digest(path):
