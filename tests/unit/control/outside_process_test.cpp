@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -67,6 +68,23 @@ TEST(OutsideProcess, what_reads_nothing_any_more_is_not_waited_for_longer_than_t
   EXPECT_EQ(trace.fault_of, FaultOf::kController);
   EXPECT_EQ(trace.steps.size(), 3U);
   EXPECT_THAT(trace.fault, HasSubstr("period 3"));
+}
+
+/// Processor time of all processes that this one started and that have ended, s.
+double time_of_children() {
+  rusage usage{};
+  EXPECT_EQ(::getrusage(RUSAGE_CHILDREN, &usage), 0);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// A busy processor only makes the wait longer, not the time that it takes of it.
+TEST(OutsideProcess, is_waited_for_without_keeping_a_processor_busy) {
+  const double before = time_of_children();
+  EXPECT_THAT(failed("hang", {"controller.deadline=3"}).fault, HasSubstr("no answer within 3 s"));
+  EXPECT_LT(time_of_children() - before, 1.5);
 }
 
 TEST(OutsideProcess, that_does_not_begin_is_a_fault_of_the_controller) {

@@ -160,6 +160,15 @@ TEST(FirstEntry, bounds_what_enters_a_half_plane_that_turns) {
   EXPECT_LT(so_far, 0.8 * bounds.shares.sum());
 }
 
+// A block that the path passes at its middle: half-spaces are turned towards it there.
+TEST(FirstEntry, counts_once_what_stays_in_a_block_at_mid_horizon) {
+  const Case one = dubins({});
+  const PredictedMotion motion = one.motion();
+  const UnsafeSet unsafe(blocked(one, 0.03));
+  const SurrogateBounds bounds = bounds_of(motion, unsafe);
+  EXPECT_LT(sum(first_entry_bounds(unsafe, bounds)), 0.95 * bounds.shares.sum());
+}
+
 TEST(FirstEntry, is_certain_or_impossible_without_noise) {
   const Case car =
       make_case("certain", dubins_car(), around(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()),
