@@ -169,6 +169,22 @@ TEST(FirstEntry, counts_once_what_stays_in_a_block_at_mid_horizon) {
   EXPECT_LT(sum(first_entry_bounds(unsafe, bounds)), 0.95 * bounds.shares.sum());
 }
 
+// With a wide heading the surrogate's error decides: the wall ahead of the car is entered more
+// often by the state than by the surrogate.
+TEST(FirstEntry, covers_the_error_of_a_wide_heading) {
+  Generator generator(307);
+  for (const double width : {0.6, 0.9}) {
+    for (const double share : {0.03, 0.1}) {
+      const Case one = dubins({}, 0.0, width);
+      const PredictedMotion motion = one.motion();
+      const SafeSet safe_set = unsafe_at_the_end(one, 0, share);
+      const UnsafeSet unsafe(safe_set);
+      const double entries = sum(first_entry_bounds(unsafe, bounds_of(motion, unsafe)));
+      EXPECT_GE(entries, surely(rates_so_far(motion, safe_set, generator).back())) << width;
+    }
+  }
+}
+
 TEST(FirstEntry, is_certain_or_impossible_without_noise) {
   const Case car =
       make_case("certain", dubins_car(), around(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()),

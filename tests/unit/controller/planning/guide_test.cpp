@@ -117,6 +117,17 @@ TEST(Guide, aims_beside_what_hides_the_target) {
   EXPECT_LT(aim.way, 11.0);
 }
 
+TEST(Guide, points_along_the_way_whatever_the_heading_of_the_state) {
+  const auto dynamics = car();
+  Guide guide(*dynamics, pocket());
+  const double along = guide.aim(Eigen::Vector3d(1.0, 5.2, 0.0)).state[2];
+  for (double heading = -7.0; heading < 7.0; heading += 0.5) {
+    const double aimed = guide.aim(Eigen::Vector3d(1.0, 5.2, heading)).state[2];
+    EXPECT_NEAR(std::remainder(aimed - along, 2.0 * std::numbers::pi), 0.0, 1e-12) << heading;
+    EXPECT_LE(std::abs(aimed - heading), std::numbers::pi + 1e-12) << heading;
+  }
+}
+
 TEST(Guide, passes_a_gap_only_where_the_noise_leaves_room_for_it) {
   const auto dynamics = car();
   PlannerSettings settings = pocket();
