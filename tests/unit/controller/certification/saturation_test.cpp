@@ -27,9 +27,12 @@ struct Clamp {
 
 /// Mean, slope and residual of the best affine fit by definition: numerical quadrature of sat(ℓ),
 /// sat(ℓ)(ℓ − m)/s² and q² between the kinks, in the arithmetic of `Real`.
+/// `norms`, if given, receives those of the residual, as kHigherOrders.
 template <class Real>
-SaturationFit quadrature(const Clamp& clamp) {
+SaturationFit quadrature(const Clamp& clamp,
+                         std::array<double, kHigherOrders.size()>* norms = nullptr) {
   using std::exp;
+  using std::pow;
   using std::sqrt;
   const Real mean = clamp.mean;
   const Real deviation = clamp.deviation;
@@ -62,6 +65,13 @@ SaturationFit quadrature(const Clamp& clamp) {
     const Real residual = saturated(z) - centre - slope * deviation * z;
     return Real(residual * residual);
   });
+  for (std::size_t k = 0; norms != nullptr && k < norms->size(); ++k) {
+    const Real moment = expectation([&](const Real& z) {
+      const Real residual = saturated(z) - centre - slope * deviation * z;
+      return Real(pow(residual, kHigherOrders[k]));
+    });
+    (*norms)[k] = static_cast<double>(pow(moment, Real(1) / kHigherOrders[k]));
+  }
   return {.mean = static_cast<double>(centre),
           .slope = static_cast<double>(slope),
           .residual = static_cast<double>(sqrt(square))};
@@ -114,6 +124,25 @@ TEST(Saturation, higher_norms_equal_simulated_ones) {
       // within 2 %.
       EXPECT_NEAR(norms[k], std::pow(sums[k], 1.0 / kHigherOrders[k]), 0.02 * norms[k])
           << clamp.mean << " order " << kHigherOrders[k];
+    }
+  }
+}
+
+TEST(Saturation, higher_norms_are_just_above_those_by_quadrature) {
+  Generator generator(95);
+  for (int repetition = 0; repetition < 100; ++repetition) {
+    Clamp clamp{.mean = uniform(generator, -2.0, 2.0),
+                .deviation = uniform(generator, 0.3, 3.0),
+                .lower = uniform(generator, -2.0, 1.0),
+                .upper = 0.0};
+    clamp.upper = clamp.lower + uniform(generator, 0.1, 4.0);
+    std::array<double, kHigherOrders.size()> expected{};
+    (void)quadrature<double>(clamp, &expected);
+    const auto norms = saturation_residual_norms(fit(clamp), clamp.mean, clamp.deviation,
+                                                 clamp.lower, clamp.upper);
+    for (std::size_t k = 0; k < norms.size(); ++k) {
+      EXPECT_GE(norms[k], expected[k] * (1.0 - 1e-10)) << "order " << kHigherOrders[k];
+      EXPECT_LE(norms[k], expected[k] * (1.0 + 1e-7)) << "order " << kHigherOrders[k];
     }
   }
 }

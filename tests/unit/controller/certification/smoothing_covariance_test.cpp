@@ -60,6 +60,22 @@ TEST(Smoothing, has_the_known_form_for_the_known_example) {
   EXPECT_EQ(smoothing_covariance(cart.motion(), 3, {0}), cart.settings.noise_covariance);
 }
 
+// Feedback moves the headings with the position, however gently.
+TEST(Smoothing, does_not_depend_on_the_size_of_the_gains) {
+  const std::vector<Eigen::Index> position = {0, 1};
+  const std::vector<Eigen::Index> all = {0, 1, 2};
+  const Eigen::RowVector3d gain(0.2, -1.0, -1.5);
+  const Case stiff = dubins({.closed_loop = true, .gain = gain});
+  const Case gentle = dubins({.closed_loop = true, .gain = 0.01 * gain});
+  for (Eigen::Index k = 1; k <= 8; ++k) {
+    for (const auto& axes : {position, all}) {
+      EXPECT_EQ(smoothing_covariance(gentle.motion(), k, axes),
+                smoothing_covariance(stiff.motion(), k, axes))
+          << k;
+    }
+  }
+}
+
 TEST(Smoothing, leaves_out_what_moves_a_restricted_heading) {
   Generator generator(117);
   const Case one = skewed_dubins({}, generator);

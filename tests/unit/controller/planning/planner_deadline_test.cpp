@@ -1,4 +1,5 @@
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -24,6 +25,15 @@ void expect_usable(const Plan& plan, const PlannerSettings& settings) {
     EXPECT_NO_THROW(check_measure(stage));
   }
   EXPECT_FALSE(plan.fallback);
+}
+
+TEST(PlannerDeadline, must_be_positive) {
+  const auto car = dubins_car();
+  for (const double deadline : {0.0, -0.5, std::nan("")}) {
+    PlannerSettings settings = dubins_settings();
+    settings.deadline = deadline;
+    EXPECT_THROW(Planner(*car, settings), std::invalid_argument) << deadline;
+  }
 }
 
 TEST(PlannerDeadline, a_plan_without_time_is_predicted_priced_and_marked) {

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "controller/planning/cost/placed_target.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::controller {
@@ -27,6 +28,23 @@ TEST(Planner, the_way_to_the_target_along_a_path_is_what_is_left_of_it) {
   EXPECT_EQ(planner.way_to_target(state, 3.0), 5.0);
   EXPECT_EQ(planner.way_to_target(state, 8.0), 0.0);
   EXPECT_EQ(planner.way_to_target(state, 9.0), 0.0) << "beyond its end";
+}
+
+TEST(Planner, has_a_target_for_each_stage_along_a_path) {
+  PlannerSettings settings = dubins_settings();
+  const Eigen::Matrix2Xd line{{0.0, 5.0, 10.0}, {0.0, 0.0, 0.0}};
+  settings.path = PathTarget{.path = std::make_shared<const ArcPath>(line, false),
+                             .speed = SpeedProfile(1.5),
+                             .time_step = 0.1,
+                             .end = 10.0};
+  QuadraticCost weights = settings.cost;
+  place_target(settings, dubins_car()->description(), Eigen::Vector3d(2.0, 0.3, 0.0), 2.0, weights);
+  ASSERT_EQ(weights.stage_targets.cols(), settings.horizon + 1);
+  for (int k = 0; k <= settings.horizon; ++k) {
+    EXPECT_NEAR(weights.stage_targets(0, k), 2.0 + 0.15 * k, 1e-9);
+    EXPECT_NEAR(weights.stage_targets(1, k), 0.0, 1e-9);
+  }
+  EXPECT_EQ(weights.target, weights.stage_targets.rightCols<1>());
 }
 
 TEST(Planner, plan_is_consistent_with_itself) {

@@ -287,6 +287,12 @@ TEST(RiskConstraint, counts_once_what_stays_unsafe_where_the_sum_exceeds_the_lim
     EXPECT_FALSE(exceeded.kept);
     EXPECT_EQ(exceeded.plan, by_sum.plan);
   }
+  // What was accepted says nothing of the plan whose risk is next written over it.
+  constraint.set_limits({.plan = 0.5 * by_sum.plan}, 0);
+  ASSERT_TRUE(risk.counted);
+  constraint.certify(belief, policy, risk);
+  EXPECT_FALSE(risk.kept);
+  EXPECT_TRUE(constraint.accept(belief, policy, risk));
 }
 
 // Half of the limit is the aim; what is within the limit is accepted all the same.
