@@ -74,8 +74,10 @@ TEST_F(Slurm, runs_an_array_and_then_what_depends_on_it) {
 }
 
 TEST_F(Slurm, cancels_what_runs_what_waits_and_what_depends_on_them) {
-  const std::string record = start("trap 'echo told; exit 130' TERM; : >ready; sleep 600 & wait",
-                                   ": >gathered", 3, {.on = "slurm", .tasks_at_once = 1});
+  // Slurm passes no signal on until it has noticed that the script runs, and kills it then.
+  const std::string record =
+      start("trap 'echo told; exit 130' TERM; sleep 1; : >ready; sleep 600 & wait", ": >gathered",
+            3, {.on = "slurm", .tasks_at_once = 1});
   ASSERT_TRUE(soon([&] { return has("ready"); }));
   EXPECT_FALSE(all_are(record, TaskCondition::kRunning));
   harness::launcher_of(record)->cancel(record);

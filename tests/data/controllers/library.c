@@ -49,6 +49,7 @@ static int32_t act(void* self, const qsmpc_situation* situation, qsmpc_answer* a
   if (strcmp(mode, "crash") == 0) *(volatile int*)NULL = 1;
   if (strcmp(mode, "exit") == 0) exit(7);
   while (strcmp(mode, "hang") == 0) sleep(1000);
+  if (strcmp(mode, "reads") == 0 && getchar() != EOF) exit(8);
   if (strcmp(mode, "nan") == 0) answer->input[0] = NAN;
   if (strcmp(mode, "inf") == 0) answer->input[0] = INFINITY;
   if (strcmp(mode, "size") == 0) answer->input_count = 2;

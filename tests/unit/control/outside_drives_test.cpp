@@ -101,6 +101,12 @@ INSTANTIATE_TEST_SUITE_P(all, OutsideControllers, ::testing::ValuesIn(kKinds),
                                                                         : "own_class";
                          });
 
+TEST(OutsideLibrary, finds_nothing_to_read_in_its_standard_input) {
+  const Trace trace = run_episode(failing_scenario(OutsideKind::kLibrary, "reads"), {.seed = 3});
+  EXPECT_EQ(trace.outcome, Outcome::kTimeout) << trace.fault;
+  EXPECT_EQ(trace.steps.size(), 6U);
+}
+
 /// With plans: an external controller and a C++ class that give the same answers.
 TEST(OutsidePlans, are_certified_stage_by_stage_and_leave_traces_and_pages) {
   const testing::TemporaryFolder folder;
