@@ -49,31 +49,39 @@ def documents_in(text):
     return documents
 
 
+def measured(program, sources, compiled, jobs):
+    """Runs each suite of a test program with these sources instrumented. Returns the same as reach_of."""
+    folder = WORK / "reach" / program
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        objects = list(pool.map(lambda source: instrumented(source, compiled[source][0], folder), sources))
+        # Optimised less, objects may leave symbols to their originals, which bring the others along.
+        flags = ["--coverage", "-Wl,--allow-multiple-definition"]
+        if not link(f"tests/{program}", objects, folder / program, flags):
+            fail(f"{program} could not be linked with --coverage")
+        suites = sorted({name.rpartition(".")[0] for name, _, _ in tests_of(program)})
+        found = list(pool.map(lambda suite: executed(folder / program, suite, folder), suites))
+    functions = {}
+    for suite, places in zip(suites, found):
+        for place in places:
+            functions.setdefault(place, []).append(suite)
+    return {source: [[first, last, names] for (of, first, last), names in sorted(functions.items()) if of == source]
+            for source in sources}
+
+
 def reach_of(program, sources, compiled, jobs):
-    """{source: [[first line, last line, suites]]} of all functions that a test program executes."""
+    """{source: [[first line, last line, suites]]} of all functions of the sources that a test program executes."""
     cache = WORK / f"{program}.reach.json"
     binary = BUILD / "tests" / program
-    if not cache.exists() or cache.stat().st_mtime < binary.stat().st_mtime:
-        folder = WORK / "reach" / program
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir(parents=True)
-        with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-            objects = list(pool.map(lambda source: instrumented(source, compiled[source][0], folder), sources))
-            # Optimised less, objects may leave symbols to their originals, which bring the others along.
-            flags = ["--coverage", "-Wl,--allow-multiple-definition"]
-            if not link(f"tests/{program}", objects, folder / program, flags):
-                fail(f"{program} could not be linked with --coverage")
-            suites = sorted({name.rpartition(".")[0] for name, _, _ in tests_of(program)})
-            found = list(pool.map(lambda suite: executed(folder / program, suite, folder), suites))
-        functions = {}
-        for suite, places in zip(suites, found):
-            for place in places:
-                functions.setdefault(place, []).append(suite)
-        reach = {source: [[first, last, names] for (of, first, last), names in sorted(functions.items()) if of == source]
-                 for source in sources}
-        cache.with_suffix(".new").write_text(json.dumps(reach))
-        os.replace(cache.with_suffix(".new"), cache)
-    return json.loads(cache.read_text())
+    if cache.exists() and cache.stat().st_mtime >= binary.stat().st_mtime:
+        reach = json.loads(cache.read_text())
+        if all(source in reach for source in sources):
+            return reach
+    reach = measured(program, sources, compiled, jobs)
+    cache.with_suffix(".new").write_text(json.dumps(reach))
+    os.replace(cache.with_suffix(".new"), cache)
+    return reach
 
 
 def suites_that_reach(functions, line):
