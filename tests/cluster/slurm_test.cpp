@@ -74,7 +74,8 @@ TEST_F(Slurm, runs_an_array_and_then_what_depends_on_it) {
 }
 
 TEST_F(Slurm, cancels_what_runs_what_waits_and_what_depends_on_them) {
-  // Slurm passes no signal on until it has noticed that the script runs, and kills it then.
+  // Until Slurm has noticed that the script is running, it does not pass on signals; it then kills
+  // the script without warning.
   const std::string record =
       start("trap 'echo told; exit 130' TERM; sleep 1; : >ready; sleep 600 & wait", ": >gathered",
             3, {.on = "slurm", .tasks_at_once = 1});

@@ -61,7 +61,7 @@ TEST(EpisodeRow, has_the_numbers_of_the_summary) {
   EXPECT_EQ(row.thesis_max, summary.thesis_max);
   EXPECT_EQ(row.iterations_median, summary.iterations_median);
   EXPECT_EQ(row.version, summary.version);
-  // None of them is what a row has by default.
+  // None of these is what a row has by default.
   const EpisodeRow none;
   EXPECT_NE(row.thesis_max, none.thesis_max);
   EXPECT_NE(row.horizon_max, none.horizon_max);

@@ -305,7 +305,7 @@ TEST(KeyRanges, follow_one_another_and_leave_nothing_out) {
   EXPECT_EQ(parts.back().last_seed, std::numeric_limits<std::int64_t>::max());
 }
 
-// SQLite is told the file as a URI.
+// SQLite opens them by URI.
 TEST_F(MergeOfParts, finds_stores_in_folders_of_any_name) {
   const std::string named = work / "50%25 of 2? #1&mode=rw;é";
   fs::rename(part({5, 6}), named);

@@ -80,7 +80,7 @@ double time_of_children() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// A busy processor only makes the wait longer, not the time that it takes of it.
+// Processor time, unlike the duration, does not depend on what else is running.
 TEST(OutsideProcess, is_waited_for_without_keeping_a_processor_busy) {
   const double before = time_of_children();
   EXPECT_THAT(failed("hang", {"controller.deadline=3"}).fault, HasSubstr("no answer within 3 s"));

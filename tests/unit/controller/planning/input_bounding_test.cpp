@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <ostream>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -16,16 +17,23 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 const Eigen::VectorXd kLower = (Eigen::VectorXd(5) << -1.0, 40.0, 2.0, -kNone, -kNone).finished();
 const Eigen::VectorXd kUpper = (Eigen::VectorXd(5) << 3.0, 40.5, kNone, -0.5, kNone).finished();
 
-class ChangeOfVariables : public ::testing::TestWithParam<InputBounding> {
+struct Kind {
+  const char* name;
+  InputBounding bounding;
+};
+
+void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
+
+class ChangeOfVariables : public ::testing::TestWithParam<Kind> {
  protected:
   [[nodiscard]] Eigen::VectorXd inputs(const Eigen::VectorXd& theta) const {
     Eigen::VectorXd z(theta.size());
     bounded.inputs(theta, z);
     return z;
   }
-  [[nodiscard]] bool is_penalty() const { return GetParam() == InputBounding::kPenalty; }
+  [[nodiscard]] bool is_penalty() const { return GetParam().bounding == InputBounding::kPenalty; }
 
-  BoundedInputs bounded{GetParam(), kLower, kUpper};
+  BoundedInputs bounded{GetParam().bounding, kLower, kUpper};
 };
 
 TEST_P(ChangeOfVariables, gives_back_inputs_that_are_not_next_to_a_bound) {
@@ -104,19 +112,10 @@ TEST_P(ChangeOfVariables,
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ChangeOfVariables,
-                         ::testing::Values(InputBounding::kSigmoid, InputBounding::kTanh,
-                                           InputBounding::kPenalty),
-                         [](const auto& kind) {
-                           switch (kind.param) {
-                             case InputBounding::kSigmoid:
-                               return "sigmoid";
-                             case InputBounding::kTanh:
-                               return "tanh";
-                             case InputBounding::kPenalty:
-                               return "penalty";
-                           }
-                           return "unknown";
-                         });
+                         ::testing::Values(Kind{"sigmoid", InputBounding::kSigmoid},
+                                           Kind{"tanh", InputBounding::kTanh},
+                                           Kind{"penalty", InputBounding::kPenalty}),
+                         [](const auto& kind) { return kind.param.name; });
 
 }  // namespace input_bounding_test
 }  // namespace qsmpc::controller

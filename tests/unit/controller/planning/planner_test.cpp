@@ -17,13 +17,20 @@ namespace planner_test {
 
 using namespace testing;
 
-TEST(Planner, the_way_to_the_target_along_a_path_is_what_is_left_of_it) {
-  const auto car = dubins_car();
+/// 1.5 m/s along the x axis, up to x = 8.
+PlannerSettings along_the_x_axis() {
   PlannerSettings settings = dubins_settings();
   const Eigen::Matrix2Xd line{{0.0, 5.0, 10.0}, {0.0, 0.0, 0.0}};
-  settings.path = PathTarget{
-      .path = std::make_shared<const ArcPath>(line, false), .speed = SpeedProfile(1.5), .end = 8.0};
-  Planner planner(*car, settings);
+  settings.path = PathTarget{.path = std::make_shared<const ArcPath>(line, false),
+                             .speed = SpeedProfile(1.5),
+                             .time_step = 0.1,
+                             .end = 8.0};
+  return settings;
+}
+
+TEST(Planner, the_way_to_the_target_along_a_path_is_what_is_left_of_it) {
+  const auto car = dubins_car();
+  Planner planner(*car, along_the_x_axis());
   const Eigen::Vector3d state(3.0, 0.0, 0.0);
   EXPECT_EQ(planner.way_to_target(state, 3.0), 5.0);
   EXPECT_EQ(planner.way_to_target(state, 8.0), 0.0);
@@ -31,12 +38,7 @@ TEST(Planner, the_way_to_the_target_along_a_path_is_what_is_left_of_it) {
 }
 
 TEST(Planner, has_a_target_for_each_stage_along_a_path) {
-  PlannerSettings settings = dubins_settings();
-  const Eigen::Matrix2Xd line{{0.0, 5.0, 10.0}, {0.0, 0.0, 0.0}};
-  settings.path = PathTarget{.path = std::make_shared<const ArcPath>(line, false),
-                             .speed = SpeedProfile(1.5),
-                             .time_step = 0.1,
-                             .end = 10.0};
+  const PlannerSettings settings = along_the_x_axis();
   QuadraticCost weights = settings.cost;
   place_target(settings, dubins_car()->description(), Eigen::Vector3d(2.0, 0.3, 0.0), 2.0, weights);
   ASSERT_EQ(weights.stage_targets.cols(), settings.horizon + 1);
