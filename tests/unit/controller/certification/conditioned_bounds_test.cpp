@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/certification/surrogate_bounds.hpp"
+#include "controller/certification/tilt_split.hpp"
 #include "tests/support/executors.hpp"
 #include "tests/support/simulated_truth.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
@@ -87,6 +88,21 @@ TEST(ConditionedBounds, fall_with_the_effort_and_stay_above_the_truth) {
   const double truth = static_cast<double>(counts.stages.back()) / kPaths;
   EXPECT_LT(tightest, 0.95 * every);
   EXPECT_GE(tightest, truth - 5.0 * std::sqrt(truth / kPaths));
+}
+
+TEST(ConditionedBounds, count_as_unsafe_what_no_part_covers) {
+  const Case one = dubins({}, 0.0, 1.0);
+  const PredictedMotion motion = one.motion();
+  SafeSet safe_set = unbounded_safe_set(3);
+  safe_set.bounds.upper[1] = 9.0;  // eight deviations away: the parts' bounds are about 1e-11
+  const UnsafeSet unsafe(safe_set);
+  const SurrogateBounds plain = plain_bounds(motion, unsafe);
+  const TiltSplit split = best_split(motion, {}, plain.surrogates, 100.0, run_in_turn);
+  ASSERT_GT(split.left_out, 0.0);
+  const ConditionedBounds bounds =
+      conditioned_bounds(motion, unsafe, plain, CertificateEffort::kEvery, run_in_turn);
+  ASSERT_LT(bounds.stages.back(), plain.bounds.back().smooth);
+  EXPECT_GE(bounds.stages.back(), split.left_out);
 }
 
 TEST(ConditionedBounds, do_not_depend_on_the_order_of_the_work) {
