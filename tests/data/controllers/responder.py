@@ -76,7 +76,8 @@ def main():
             seed = message["seed"]
             print("drive", seed, file=sys.stderr, flush=True)
             continue
-        answer = {"input": [0.01 * (seed % 10)], "period": message["period"]}
+        inputs = len(scenario["system"]["inputs"])
+        answer = {"input": [0.01 * (seed % 10)] * inputs, "period": message["period"]}
         if scenario["plans"]:
             stages = scenario["horizon"]
             answer = {"plan": {"inputs": [[0.1]] * stages, "gains": [[[0.0, -0.5, -1.0]]] * stages,
