@@ -40,5 +40,20 @@ TEST(PlanEvaluator, holds_assignments_only_of_finite_predictions_from_as_many_eq
   EXPECT_FALSE(evaluator.can_freeze(other));
 }
 
+TEST(PlanEvaluator, limits_the_risk_by_each_limit_alone) {
+  const auto car = dubins_car();
+  const PlannerSettings settings = dubins_settings();
+  for (double RiskLimits::*limit : {&RiskLimits::first, &RiskLimits::stage, &RiskLimits::plan}) {
+    PlanEvaluator evaluator(*car, settings);
+    RiskLimits limits;
+    limits.*limit = 1.0;  // always kept
+    evaluator.set_limits(limits, 0);
+    EXPECT_EQ(evaluator.risk(), nullptr);
+    limits.*limit = 0.02;
+    evaluator.set_limits(limits, 0);
+    EXPECT_NE(evaluator.risk(), nullptr);
+  }
+}
+
 }  // namespace plan_evaluator_test
 }  // namespace qsmpc::controller
