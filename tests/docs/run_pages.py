@@ -10,7 +10,8 @@ headers and build/release/qsmpc, which is PROGRAM. Of the page's fenced blocks, 
   ```sh                        is run in the same shell as those before it, and must succeed
   ```sh exit="1"               must end with this exit code
   ```sh no-test="REASON"       is not run; it is listed with the reason
-  ```text                      after a block that was run: each line must be in its output, numbers aside
+  ```text                      after a block that was run: each line must be in its output, times aside, and its
+                               numbers must be those of the output to 2 %
 """
 import os
 import pathlib
@@ -21,16 +22,23 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FENCE = re.compile(r"^```(\w+)([^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-NUMBER = re.compile(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?")
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+TOLERANCE = 0.02  # relative
 
 
 class Failure(Exception):
     pass
 
 
-def normalised(line):
-    """The words of a line, numbers replaced by #."""
-    return " ".join(NUMBER.sub("#", line).split())
+def shows(line, printed):
+    """Whether the words of `line` are in the line `printed`, with about the same numbers; durations may differ."""
+    words = map(re.escape, " ".join(NUMBER.sub("\0", line).split()).split("\0"))
+    found = re.search(f"({NUMBER.pattern})".join(words), " ".join(printed.split()))
+    if not found:
+        return False
+    pairs = zip(map(float, NUMBER.findall(line)), map(float, found.groups()))
+    return re.search(r"\bms\b", line) is not None or all(
+        abs(there - here) <= TOLERANCE * abs(here) for there, here in pairs)
 
 
 def blocks(text):
@@ -88,9 +96,9 @@ def put_file(folder, name, body):
 
 def compare(body, output):
     """Every line of `body` must be in `output`, in this order."""
-    found = iter([normalised(line) for line in output.splitlines()])
+    printed = iter(output.splitlines())
     for line in filter(str.strip, body.splitlines()):
-        if not any(normalised(line) in candidate for candidate in found):
+        if not any(shows(line, candidate) for candidate in printed):
             raise Failure(f"the page shows the line\n  {line}\nand the command printed\n{output}")
 
 
