@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <limits>
 
+#include <Eigen/Core>
 #include <gtest/gtest.h>
 
 #include "tests/unit/controller/planning/planner_fixture.hpp"
