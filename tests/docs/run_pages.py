@@ -10,8 +10,8 @@ headers and build/release/qsmpc, which is PROGRAM. Of the page's fenced blocks, 
   ```sh                        is run in the same shell as those before it, and must succeed
   ```sh exit="1"               must end with this exit code
   ```sh no-test="REASON"       is not run; it is listed with the reason
-  ```text                      after a block that was run: each line must be in its output, times aside, and its
-                               numbers must be those of the output to 2 %
+  ```text                      after a block that was run: each line must be in its output, its numbers within 2 %;
+                               in lines with milliseconds they may be any
 """
 import os
 import pathlib
@@ -31,7 +31,7 @@ class Failure(Exception):
 
 
 def shows(line, printed):
-    """Whether the words of `line` are in the line `printed`, with about the same numbers; durations may differ."""
+    """Whether the words of `line` are in the line `printed`, with about the same numbers or with milliseconds."""
     words = map(re.escape, " ".join(NUMBER.sub("\0", line).split()).split("\0"))
     found = re.search(f"({NUMBER.pattern})".join(words), " ".join(printed.split()))
     if not found:

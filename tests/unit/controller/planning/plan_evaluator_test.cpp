@@ -22,7 +22,7 @@ Plan straight_ahead(PlanEvaluator& evaluator) {
   return plan;
 }
 
-TEST(PlanEvaluator, holds_assignments_only_of_finite_predictions_from_as_many_equal_weights) {
+TEST(PlanEvaluator, can_freeze_only_finite_predictions_from_the_same_weights) {
   const auto car = dubins_car();
   const PlannerSettings settings = dubins_settings();
   PlanEvaluator evaluator(*car, settings);
